@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && DELTA_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && DELTA_LANES >= 4 && VECTORS_OF(DELTA_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -611,8 +628,9 @@ static int acceptable(const delta_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int delta_prepare(const delta_params *params, delta_model *model)
 {
@@ -628,9 +646,9 @@ int delta_prepare(const delta_params *params, delta_model *model)
     real b_c_rus_in_platform_y = 0;
     real b_c_rus_in_platform_z = 0;
     real legs_size_rus = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -640,36 +658,32 @@ int delta_prepare(const delta_params *params, delta_model *model)
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rus); ++leg) {
         const size_t own = leg < LEGS_OF_rus ? leg : 0;
-        const real rus_base_point_x = params->rus_base_point[own][0];
-        const real rus_base_point_y = params->rus_base_point[own][1];
-        const real rus_base_point_z = params->rus_base_point[own][2];
-        const real rus_base_frame_xx = params->rus_base_frame[own][0][0];
-        const real rus_base_frame_xy = params->rus_base_frame[own][0][1];
-        const real rus_base_frame_xz = params->rus_base_frame[own][0][2];
-        const real rus_base_frame_yx = params->rus_base_frame[own][1][0];
-        const real rus_base_frame_yy = params->rus_base_frame[own][1][1];
-        const real rus_base_frame_yz = params->rus_base_frame[own][1][2];
-        const real rus_base_frame_zx = params->rus_base_frame[own][2][0];
-        const real rus_base_frame_zy = params->rus_base_frame[own][2][1];
-        const real rus_base_frame_zz = params->rus_base_frame[own][2][2];
-        const real rus_platform_point_x = params->rus_platform_point[own][0];
-        const real rus_platform_point_y = params->rus_platform_point[own][1];
-        const real rus_platform_point_z = params->rus_platform_point[own][2];
-        const real rus_joint2_offset_x = params->rus_joint2_offset[own][0];
-        const real rus_platform_joint_offset_x = params->rus_platform_joint_offset[own][0];
-        const real rus_link1_mass = params->rus_link1_mass[own];
+        KEEP_OF_LEG(rus_base_point_x, params->rus_base_point[own][0]);
+        KEEP_OF_LEG(rus_base_point_y, params->rus_base_point[own][1]);
+        KEEP_OF_LEG(rus_base_point_z, params->rus_base_point[own][2]);
+        KEEP_OF_LEG(rus_base_frame_xx, params->rus_base_frame[own][0][0]);
+        KEEP_OF_LEG(rus_base_frame_xy, params->rus_base_frame[own][0][1]);
+        KEEP_OF_LEG(rus_base_frame_xz, params->rus_base_frame[own][0][2]);
+        KEEP_OF_LEG(rus_base_frame_yx, params->rus_base_frame[own][1][0]);
+        KEEP_OF_LEG(rus_base_frame_yy, params->rus_base_frame[own][1][1]);
+        KEEP_OF_LEG(rus_base_frame_yz, params->rus_base_frame[own][1][2]);
+        KEEP_OF_LEG(rus_base_frame_zx, params->rus_base_frame[own][2][0]);
+        KEEP_OF_LEG(rus_base_frame_zy, params->rus_base_frame[own][2][1]);
+        KEEP_OF_LEG(rus_base_frame_zz, params->rus_base_frame[own][2][2]);
+        KEEP_OF_LEG(rus_platform_point_x, params->rus_platform_point[own][0]);
+        KEEP_OF_LEG(rus_platform_point_y, params->rus_platform_point[own][1]);
+        KEEP_OF_LEG(rus_platform_point_z, params->rus_platform_point[own][2]);
+        KEEP_OF_LEG(rus_joint2_offset_x, params->rus_joint2_offset[own][0]);
+        KEEP_OF_LEG(rus_platform_joint_offset_x, params->rus_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rus_link1_mass, params->rus_link1_mass[own]);
         const real rus_link1_centre_of_mass_x = params->rus_link1_centre_of_mass[own][0];
         const real rus_link1_centre_of_mass_y = params->rus_link1_centre_of_mass[own][1];
         const real rus_link1_centre_of_mass_z = params->rus_link1_centre_of_mass[own][2];
         const real rus_link1_inertia_zz = params->rus_link1_inertia[own][2][2];
-        const real rus_link3_mass = params->rus_link3_mass[own];
+        KEEP_OF_LEG(rus_link3_mass, params->rus_link3_mass[own]);
         const real rus_link3_centre_of_mass_x = params->rus_link3_centre_of_mass[own][0];
         const real rus_link3_centre_of_mass_y = params->rus_link3_centre_of_mass[own][1];
         const real rus_link3_centre_of_mass_z = params->rus_link3_centre_of_mass[own][2];
@@ -680,194 +694,128 @@ int delta_prepare(const delta_params *params, delta_model *model)
         const real rus_link3_inertia_yz = params->rus_link3_inertia[own][1][2];
         const real rus_link3_inertia_zz = params->rus_link3_inertia[own][2][2];
         static const signed char signs_rus_branch_1[] = {-1, -1, -1};
-        const real rus_branch_1 = signs_rus_branch_1[own];
+        KEEP_OF_LEG(rus_branch_1, signs_rus_branch_1[own]);
         static const signed char signs_rus_branch_2[] = {1, 1, 1};
-        const real rus_branch_2 = signs_rus_branch_2[own];
+        KEEP_OF_LEG(rus_branch_2, signs_rus_branch_2[own]);
         /* (rus-size) length of the leg's lever arms, the measure of what is near singular */
         const real rus_size_t = rus_joint2_offset_x*rus_joint2_offset_x;
         const real rus_size_t_2 = rus_platform_joint_offset_x*rus_platform_joint_offset_x;
-        const real rus_size_t_3 = R(5.72469284689e-07) + rus_size_t + rus_size_t_2;
-        const real rus_size = root(rus_size_t_3);
+        KEEP_OF_LEG(rus_size_t_3, R(5.72469284689e-07) + rus_size_t + rus_size_t_2);
+        KEEP_OF_LEG(rus_size, root(rus_size_t_3));
         /* (rus-h_1) first moment of link 1 about the origin of link 1 */
-        const real rus_h_1_in_spec1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
-        const real rus_h_1_in_spec1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
-        const real rus_h_1_in_spec1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
+        KEEP_OF_LEG(rus_h_1_in_spec1_x, rus_link1_centre_of_mass_x*rus_link1_mass);
+        KEEP_OF_LEG(rus_h_1_in_spec1_y, rus_link1_centre_of_mass_y*rus_link1_mass);
+        KEEP_OF_LEG(rus_h_1_in_spec1_z, rus_link1_centre_of_mass_z*rus_link1_mass);
         /* (rus-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rus_J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z;
         const real rus_J_1_t_2 = rus_J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x
             + rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y;
-        const real rus_J_1_in_spec1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t -
-            rus_J_1_t_2);
+        KEEP_OF_LEG(rus_J_1_in_spec1_zz, rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t -
+            rus_J_1_t_2));
         /* (rus-rho_tip_3) connection point to the centre of mass of link 3 */
         const real rus_rho_tip_3_in_spec3_x = rus_link3_centre_of_mass_x -
             rus_platform_joint_offset_x;
         /* (rus-h_3) first moment of link 3 about the connection point */
-        const real rus_h_3_in_spec3_x = rus_link3_mass*rus_rho_tip_3_in_spec3_x;
-        const real rus_h_3_in_spec3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
-        const real rus_h_3_in_spec3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
+        KEEP_OF_LEG(rus_h_3_in_spec3_x, rus_link3_mass*rus_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rus_h_3_in_spec3_y, rus_link3_centre_of_mass_y*rus_link3_mass);
+        KEEP_OF_LEG(rus_h_3_in_spec3_z, rus_link3_centre_of_mass_z*rus_link3_mass);
         /* (rus-J_3) inertia tensor of link 3 about the connection point */
         const real rus_J_3_t = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x;
         const real rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
         const real rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
         const real rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3;
-        const real rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t -
-            rus_J_3_t_4);
-        const real rus_J_3_in_spec3_xy = rus_link3_inertia_xy -
-            rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
-        const real rus_J_3_in_spec3_xz = rus_link3_inertia_xz -
-            rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        KEEP_OF_LEG(rus_J_3_in_spec3_xx, rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t -
+            rus_J_3_t_4));
+        KEEP_OF_LEG(rus_J_3_in_spec3_xy, rus_link3_inertia_xy -
+            rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xz, rus_link3_inertia_xz -
+            rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x);
         const real rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 -
             rus_J_3_t_4);
-        const real rus_J_3_in_spec3_yz = rus_link3_inertia_yz -
-            rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
-        const real rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 -
-            rus_J_3_t_4);
+        KEEP_OF_LEG(rus_J_3_in_spec3_yz, rus_link3_inertia_yz -
+            rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass);
+        KEEP_OF_LEG(rus_J_3_in_spec3_zz, rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 -
+            rus_J_3_t_4));
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rus_Kd_1_t = R(0.5)*rus_size_t;
-        const real rus_Kd_1_t_2 = R(0.5)*rus_size_t_2;
+        KEEP_OF_LEG(rus_Kd_1_t, R(0.5)*rus_size_t);
+        KEEP_OF_LEG(rus_Kd_1_t_2, R(0.5)*rus_size_t_2);
         /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1_t = rus_size*rus_size*rus_size_t_3;
+        KEEP_OF_LEG(rus_rho2_1_t, rus_size*rus_size*rus_size_t_3);
         /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = 1/rus_size_t;
+        KEEP_OF_LEG(inv_rus_size_t, 1/rus_size_t);
         /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = 1/rus_size_t_2;
+        KEEP_OF_LEG(inv_rus_size_t_2, 1/rus_size_t_2);
         /* (rus-w_3) reciprocal vector 3 */
-        const real rus_w_3_in_axes3_y = 1/rus_platform_joint_offset_x;
+        KEEP_OF_LEG(rus_w_3_in_axes3_y, 1/rus_platform_joint_offset_x);
         /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y;
+        KEEP_OF_LEG(rus_d_phi_3_in_axes3_xy, rus_h_3_in_spec3_z*rus_w_3_in_axes3_y);
         /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real rus_Sigma_3_t = rus_J_3_in_spec3_xx + rus_J_3_in_spec3_yy +
             rus_J_3_in_spec3_zz;
         const real rus_Sigma_3_t_2 = R(0.5)*rus_Sigma_3_t;
-        const real rus_Sigma_3_in_axes3_xx = rus_Sigma_3_t_2 - rus_J_3_in_spec3_xx;
-        const real rus_Sigma_3_in_axes3_yy = rus_Sigma_3_t_2 - rus_J_3_in_spec3_zz;
-        const real rus_Sigma_3_in_axes3_zz = rus_Sigma_3_t_2 - rus_J_3_in_spec3_yy;
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_xx, rus_Sigma_3_t_2 - rus_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_yy, rus_Sigma_3_t_2 - rus_J_3_in_spec3_zz);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_zz, rus_Sigma_3_t_2 - rus_J_3_in_spec3_yy);
         /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y;
-        const real rus_d_Gamma_3_in_axes3_y = rus_d_Gamma_3_t + rus_h_3_in_spec3_x;
+        KEEP_OF_LEG(rus_d_Gamma_3_t, rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y);
+        KEEP_OF_LEG(rus_d_Gamma_3_in_axes3_y, rus_d_Gamma_3_t + rus_h_3_in_spec3_x);
         /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_mu_1_t = gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx +
-            gravity_z*rus_base_frame_zx;
-        const real rus_mu_1_t_2 = gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
-            gravity_z*rus_base_frame_zy;
+        KEEP_OF_LEG(rus_mu_1_t, gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx +
+            gravity_z*rus_base_frame_zx);
+        KEEP_OF_LEG(rus_mu_1_t_2, gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
+            gravity_z*rus_base_frame_zy);
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rus_rho2_1_t = 1/rus_rho2_1_t;
-        const real inv_rus_size_t_3 = 1/rus_size_t_3;
-        const real inv_rus_size = 1/rus_size;
+        KEEP_OF_LEG(inv_rus_rho2_1_t, 1/rus_rho2_1_t);
+        KEEP_OF_LEG(inv_rus_size_t_3, 1/rus_size_t_3);
+        KEEP_OF_LEG(inv_rus_size, 1/rus_size);
         /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rus_d_c_in_axes3_yy = -rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_y -
-            rus_h_3_in_spec3_x*rus_w_3_in_axes3_y;
+        KEEP_OF_LEG(rus_d_c_in_axes3_yy, -rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_y -
+            rus_h_3_in_spec3_x*rus_w_3_in_axes3_y);
         /* (h_star) */
         const real rus_h_star_t = rus_link3_mass*rus_platform_point_x;
         const real rus_h_star_t_2 = rus_link3_mass*rus_platform_point_y;
         const real rus_h_star_t_3 = rus_link3_mass*rus_platform_point_z;
         /* (potential) potential energy */
-        const real rus_g_in_axes1_z = gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
-            gravity_z*rus_base_frame_zz;
-        const real rus_potential_t = rus_base_frame_xx*rus_base_point_x +
-            rus_base_frame_yx*rus_base_point_y + rus_base_frame_zx*rus_base_point_z;
-        const real rus_potential_t_2 = rus_base_frame_xy*rus_base_point_x +
-            rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z;
-        const real rus_potential_t_3 = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
-            rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z);
-        KEEP_OF_LEG(inv_rus_rho2_1_t);
-        KEEP_OF_LEG(inv_rus_size);
-        KEEP_OF_LEG(inv_rus_size_t);
-        KEEP_OF_LEG(inv_rus_size_t_2);
-        KEEP_OF_LEG(inv_rus_size_t_3);
-        KEEP_OF_LEG(rus_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rus_J_3_in_spec3_xx);
-        KEEP_OF_LEG(rus_J_3_in_spec3_xy);
-        KEEP_OF_LEG(rus_J_3_in_spec3_xz);
-        KEEP_OF_LEG(rus_J_3_in_spec3_yz);
-        KEEP_OF_LEG(rus_J_3_in_spec3_zz);
-        KEEP_OF_LEG(rus_Kd_1_t);
-        KEEP_OF_LEG(rus_Kd_1_t_2);
-        KEEP_OF_LEG(rus_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(rus_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(rus_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(rus_base_frame_xx);
-        KEEP_OF_LEG(rus_base_frame_xy);
-        KEEP_OF_LEG(rus_base_frame_xz);
-        KEEP_OF_LEG(rus_base_frame_yx);
-        KEEP_OF_LEG(rus_base_frame_yy);
-        KEEP_OF_LEG(rus_base_frame_yz);
-        KEEP_OF_LEG(rus_base_frame_zx);
-        KEEP_OF_LEG(rus_base_frame_zy);
-        KEEP_OF_LEG(rus_base_frame_zz);
-        KEEP_OF_LEG(rus_base_point_x);
-        KEEP_OF_LEG(rus_base_point_y);
-        KEEP_OF_LEG(rus_base_point_z);
-        KEEP_OF_LEG(rus_branch_1);
-        KEEP_OF_LEG(rus_branch_2);
-        KEEP_OF_LEG(rus_d_Gamma_3_in_axes3_y);
-        KEEP_OF_LEG(rus_d_Gamma_3_t);
-        KEEP_OF_LEG(rus_d_c_in_axes3_yy);
-        KEEP_OF_LEG(rus_d_phi_3_in_axes3_xy);
-        KEEP_OF_LEG(rus_g_in_axes1_z);
-        KEEP_OF_LEG(rus_h_1_in_spec1_x);
-        KEEP_OF_LEG(rus_h_1_in_spec1_y);
-        KEEP_OF_LEG(rus_h_1_in_spec1_z);
-        KEEP_OF_LEG(rus_h_3_in_spec3_x);
-        KEEP_OF_LEG(rus_h_3_in_spec3_y);
-        KEEP_OF_LEG(rus_h_3_in_spec3_z);
-        KEEP_OF_LEG(rus_joint2_offset_x);
-        KEEP_OF_LEG(rus_link1_mass);
-        KEEP_OF_LEG(rus_link3_mass);
-        KEEP_OF_LEG(rus_mu_1_t);
-        KEEP_OF_LEG(rus_mu_1_t_2);
-        KEEP_OF_LEG(rus_platform_joint_offset_x);
-        KEEP_OF_LEG(rus_platform_point_x);
-        KEEP_OF_LEG(rus_platform_point_y);
-        KEEP_OF_LEG(rus_platform_point_z);
-        KEEP_OF_LEG(rus_potential_t);
-        KEEP_OF_LEG(rus_potential_t_2);
-        KEEP_OF_LEG(rus_potential_t_3);
-        KEEP_OF_LEG(rus_rho2_1_t);
-        KEEP_OF_LEG(rus_size);
-        KEEP_OF_LEG(rus_size_t_3);
-        KEEP_OF_LEG(rus_w_3_in_axes3_y);
-        m_star_of_legs += leg < LEGS_OF_rus ? rus_link3_mass : 0;
-        h_star_x_of_legs += leg < LEGS_OF_rus ? rus_h_star_t : 0;
-        h_star_y_of_legs += leg < LEGS_OF_rus ? rus_h_star_t_2 : 0;
-        h_star_z_of_legs += leg < LEGS_OF_rus ? rus_h_star_t_3 : 0;
-        b_c_rus_in_platform_x += leg < LEGS_OF_rus ? rus_platform_point_x : 0;
-        b_c_rus_in_platform_y += leg < LEGS_OF_rus ? rus_platform_point_y : 0;
-        b_c_rus_in_platform_z += leg < LEGS_OF_rus ? rus_platform_point_z : 0;
-        legs_size_rus += leg < LEGS_OF_rus ? rus_size_t_3 : 0;
+        KEEP_OF_LEG(rus_g_in_axes1_z, gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
+            gravity_z*rus_base_frame_zz);
+        KEEP_OF_LEG(rus_potential_t, rus_base_frame_xx*rus_base_point_x +
+            rus_base_frame_yx*rus_base_point_y + rus_base_frame_zx*rus_base_point_z);
+        KEEP_OF_LEG(rus_potential_t_2, rus_base_frame_xy*rus_base_point_x +
+            rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z);
+        KEEP_OF_LEG(rus_potential_t_3, rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
+            rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z));
+        if (leg < LEGS_OF_rus) {
+            m_star_of_legs += rus_link3_mass;
+            h_star_x_of_legs += rus_h_star_t;
+            h_star_y_of_legs += rus_h_star_t_2;
+            h_star_z_of_legs += rus_h_star_t_3;
+            b_c_rus_in_platform_x += rus_platform_point_x;
+            b_c_rus_in_platform_y += rus_platform_point_y;
+            b_c_rus_in_platform_z += rus_platform_point_z;
+            legs_size_rus += rus_size_t_3;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_x = h_star_t + h_star_x_of_legs;
-    const real h_star_y = h_star_t_2 + h_star_y_of_legs;
-    const real h_star_z = h_star_t_3 + h_star_z_of_legs;
+    KEEP(h_star_x, h_star_t + h_star_x_of_legs);
+    KEEP(h_star_y, h_star_t_2 + h_star_y_of_legs);
+    KEEP(h_star_z, h_star_t_3 + h_star_z_of_legs);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = -gravity_x*m_star;
-    const real Z_p_y = -gravity_y*m_star;
-    const real Z_p_z = -gravity_z*m_star;
+    KEEP(Z_p_x, -gravity_x*m_star);
+    KEEP(Z_p_y, -gravity_y*m_star);
+    KEEP(Z_p_z, -gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rus_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rus_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rus_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_rus_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_rus_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_rus_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_rus)*spread_t;
-    KEEP(Z_p_x);
-    KEEP(Z_p_y);
-    KEEP(Z_p_z);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_x);
-    KEEP(h_star_y);
-    KEEP(h_star_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_rus)*spread_t);
     return OK;
 }
 
@@ -1311,8 +1259,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_S_y = m->rus_platform_point_y[i] + t_y - m->rus_base_point_y[i];
     const real t_z = X[2*w + j];
     const real rus_S_z = m->rus_platform_point_z[i] + t_z - m->rus_base_point_z[i];
-    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
+    /* (rus-Kd_1) */
     const real rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
     const real rus_Kd_1 = m->rus_Kd_1_t[i] - m->rus_Kd_1_t_2[i] + R(0.5)*rus_Kd_1_t_3;
     /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
@@ -1321,7 +1268,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
     const real rus_Ks_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xy[i] +
         rus_S_y*m->rus_base_frame_yy[i] + rus_S_z*m->rus_base_frame_zy[i]);
-    /* (rus-rho2_1) squared amplitude */
+    /* (rus-rho2_1) */
     v->rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
     /* (rus-disc_1) discriminant */
     v->rus_disc_1 = v->rus_rho2_1 - rus_Kd_1*rus_Kd_1;
@@ -1332,7 +1279,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
     v->rus_s_1 = inv_rus_rho2_1*(rus_Kd_1*rus_Ks_1 + rus_Kc_1*rus_root_1);
-    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+    /* (rus-xi_1) */
     const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
     /* (rus-x_2) from the origin of joint 2 to the connection point */
     const real rus_x_2_in_axes1_x = m->inv_rus_size_t[i]*rus_Kd_1*m->rus_joint2_offset_x[i] -
@@ -1346,7 +1293,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
     v->rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+    /* (rus-c_3) */
     v->rus_c_3 = m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*rus_root_2;
     /* (rus-q_3) displacement of joint 3 */
     v->rus_e_1_in_axes3_x =
@@ -1407,7 +1354,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
        inertia and weight */
     v->rus_d_Gamma_2_t_2 = v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
         v->rus_c_3*m->rus_h_3_in_spec3_x[i];
-    /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rus-mu_1) */
     v->rus_g_in_axes1_x = v->rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v->rus_s_1;
     v->rus_g_in_axes1_y = v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1;
     v->rus_mu_1_t_3 = v->rus_g_in_axes1_y*m->rus_h_1_in_spec1_x[i] -
@@ -1574,7 +1521,7 @@ INLINE void stage_rus_Z_dynamics(const prepared *m, size_t i, values_rus *v)
 
 INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
 {
-    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    /* (rus-J_3) */
     const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*v->rus_e_1_in_axes3_x +
         m->rus_J_3_in_spec3_yz[i]*v->rus_c_3;
     const real rus_J_3_in_axes1_zz =
@@ -1582,22 +1529,20 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
         m->rus_J_3_in_spec3_zz[i]*v->rus_c_3) -
         v->rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*v->rus_e_1_in_axes3_x -
         m->rus_J_3_in_spec3_xz[i]*v->rus_c_3);
-    /* (rus-w_2) reciprocal vector 2 */
+    /* (rus-w_2) */
     const real rus_w_2_in_axes3_x =
         v->inv_rus_v_1_t*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
-    /* (rus-w_3) reciprocal vector 3 */
+    /* (rus-w_3) */
     const real rus_w_3_in_axes3_x =
         v->inv_rus_v_1_t*v->rus_v_1_in_axes3_y*m->rus_w_3_in_axes3_y[i];
     /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real rus_d_alpha_3_t = v->rus_c_3*v->rus_w_2_in_axes3_z;
-    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
+    /* (rus-d_Gamma_3) */
     const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*v->rus_w_2_in_axes3_z;
     const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
         v->inv_rus_v_1_t*(rus_J_3_in_axes2_yz - m->rus_d_Gamma_3_t[i]*v->rus_v_1_in_axes3_y -
         rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
-    /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (rus-d_Gamma_2) */
     const real rus_d_Gamma_2_t = v->rus_c_3*m->rus_h_3_in_spec3_y[i];
     const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*v->rus_w_2_in_axes3_z;
     const real rus_d_Gamma_2_t_4 = rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
@@ -1616,8 +1561,7 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     /* (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*v->rus_w_2_in_axes3_z;
-    /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rus-d_c) */
     const real rus_d_c_in_axes3_xx = v->inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x -
         rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
         m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x -
@@ -1680,11 +1624,11 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     const real rus_B_3_in_axes3_yx = v->rus_W_3_in_axes3_xy - v->rus_qdd_3_t;
     const real rus_B_3_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
     const real rus_B_3_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
-    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (rus-acc_3) */
     v->rus_acc_3_in_axes3_x = v->rus_S_ddot_in_axes3_x - v->rus_g_in_axes3_x;
     v->rus_acc_3_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_g_in_axes3_y;
     v->rus_acc_3_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_g_in_axes3_z;
-    /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (rus-mu_3) */
     const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
         v->rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
         v->rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
@@ -1705,18 +1649,16 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
         v->rus_c_3*rus_mu_3_in_axes3_y;
-    /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rus-mu_1) */
     const real rus_mu_1_in_axes1_z = -v->rus_mu_1_t_3 -
         m->rus_J_1_in_spec1_zz[i]*v->rus_qdd_1_t;
     /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
-    /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rus-G) */
     const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*v->rus_w_2_in_axes3_z;
     const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rus-c) */
     v->rus_c_in_axes3_x = v->rus_c_t + rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
         rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] + v->inv_rus_v_1_t*(rus_N_1_in_axes1_z
         - rus_G_in_axes3_y*v->rus_v_1_in_axes3_y - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
@@ -1758,7 +1700,7 @@ INLINE void any_sums_rus_2(size_t k, size_t count, int add, const values_rus *v,
 
 INLINE void any_entries_rus(size_t k, size_t count, const values_rus *v, real *o)
 {
-    /* (rus-w_1) reciprocal vector 1 */
+    /* (rus-w_1) */
     o[0*count + k] = -v->rus_w_1_t_7;
     o[1*count + k] = -v->rus_w_1_t_8;
     o[2*count + k] = -v->rus_w_1_t_9;
@@ -1770,6 +1712,49 @@ INLINE void any_singular_rus(const prepared *m, size_t i, size_t k, const values
         UNLESS(magnitude(v->rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
         UNLESS(magnitude(v->rus_v_2_in_axes3_z) > TOLERANCE*m->rus_size[i]) +
         UNLESS(magnitude(v->rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *sums, real *M,
+    status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
+}
+
+INLINE void any_after_2(const prepared *m, size_t w, size_t k, const real *sums, real *Z,
+    status_flags *t)
+{
+    /* (Z_t) */
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
 }
 
 INLINE void any_place_rus_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1800,45 +1785,14 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
     *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    const real Z_t_z_of_legs = sums[8*w + k];
-    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_xz + M_tt_yy)) + ((M_tt_yz + M_tt_zz) + (Z_t_x
-        + (Z_t_y + Z_t_z)));
+    any_after(m, w, k, sums, M, t);
+    any_after_2(m, w, k, sums + 6*w, Z, t);
 }
 
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real sums[SUMS_OF_dynamics] CLEARED;
     real terms_rus[SUMS_OF_dynamics*LEGS(LEGS_OF_rus)] CLEARED, o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
@@ -1892,32 +1846,12 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
+    any_after(m, w, k, sums, M, t);
 }
 
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[SUMS_OF_M] CLEARED;
     real terms_rus[SUMS_OF_M*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
@@ -1934,7 +1868,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real sums[SUMS_OF_M*LANES];
@@ -1972,18 +1906,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
+    any_after_2(m, w, k, sums, Z, t);
 }
 
 #define SUMS_OF_Z ((size_t)3)
@@ -2005,7 +1928,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real sums[SUMS_OF_Z*LANES];
@@ -2041,7 +1964,7 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2097,15 +2020,14 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rus_V_X(m, w, i, j, V, &v);
     stage_rus_A_V_X(m, i, &v);
     stage_rus_legs_required(m, i, &v);
-    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rus-c) */
     const real rus_c_x = v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y +
         v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x;
     const real rus_c_y = v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y +
         v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x;
     const real rus_c_z = v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y +
         v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, rus_c_z);  /* R_t_z_of_legs */
@@ -2126,7 +2048,7 @@ INLINE void required_place_rus(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[0*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2167,8 +2089,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rus[5*LANES];
@@ -2203,7 +2125,7 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     const real rus_q_1 = angle(v.rus_s_1, v.rus_c_1);
     /* (rus-q_2) displacement of joint 2 */
     const real rus_q_2 = angle(-v.rus_s_2_t, v.rus_c_2);
-    /* (rus-q_3) displacement of joint 3 */
+    /* (rus-q_3) */
     const real rus_q_3 = angle(-v.rus_e_1_in_axes3_x, v.rus_c_3);
     /* (rus-q_1) */
     o[0*count + k] = rus_q_1;
@@ -2228,7 +2150,8 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2263,11 +2186,11 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
     stage_rus_V_X(m, w, i, j, V, &v);
-    /* (rus-qd_1) rate of joint 1 */
+    /* (rus-qd_1) */
     o[0*count + k] = -v.rus_qd_1_t;
-    /* (rus-qd_2) rate of joint 2 */
+    /* (rus-qd_2) */
     o[1*count + k] = v.rus_qd_2;
-    /* (rus-qd_3) rate of joint 3 */
+    /* (rus-qd_3) */
     o[2*count + k] = v.rus_qd_3;
     o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 4*count);
@@ -2285,8 +2208,8 @@ INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2323,11 +2246,11 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     stage_rus_A_X(w, j, A, &v);
     stage_rus_V_X(m, w, i, j, V, &v);
     stage_rus_A_V_X(m, i, &v);
-    /* (rus-qdd_1) acceleration of joint 1 */
+    /* (rus-qdd_1) */
     o[0*count + k] = -v.rus_qdd_1_t;
-    /* (rus-qdd_2) acceleration of joint 2 */
+    /* (rus-qdd_2) */
     o[1*count + k] = v.rus_qdd_2;
-    /* (rus-qdd_3) acceleration of joint 3 */
+    /* (rus-qdd_3) */
     o[2*count + k] = -v.rus_qdd_3_t;
     o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 4*count);
@@ -2345,8 +2268,8 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[5*count + at];
 }
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2404,7 +2327,7 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rus_c_true_x;
     o[1*count + k] = rus_c_true_y;
     o[2*count + k] = rus_c_true_z;
-    /* (rus-w_1) reciprocal vector 1 */
+    /* (rus-w_1) */
     o[3*count + k] = -v.rus_w_1_t_7;
     o[4*count + k] = -v.rus_w_1_t_8;
     o[5*count + k] = -v.rus_w_1_t_9;
@@ -2443,7 +2366,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 /* ---- potential ---- */
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -2512,7 +2435,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
 INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
     *t)
 {
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -2522,8 +2445,7 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rus-G) */
     const real rus_pivot_size = magnitude(v.rus_rho2_1);
     const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
     const real rus_pivot_size_3 = magnitude(v.rus_v_2_in_axes3_z);
@@ -2566,7 +2488,7 @@ INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rus = sums[0*w + k];
     const real spread_ = root(spread_rus)*m->spread_t;
     /* (spread) */
@@ -2576,8 +2498,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real sums[SUMS_OF_condition] CLEARED;
     real terms_rus[SUMS_OF_condition*LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
@@ -2597,7 +2519,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int delta_M(const prepared *m, const real *X, real *M_out)
+NARROW int delta_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2620,7 +2542,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int delta_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int delta_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2644,7 +2566,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int delta_H(const prepared *m, const real *X, real *H_out)
+NARROW int delta_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2667,7 +2589,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int delta_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int delta_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2690,7 +2612,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int delta_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int delta_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2715,8 +2637,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int delta_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A, real
-    *qdd_out)
+NARROW int delta_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2742,8 +2664,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int delta_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out, real
-    *H_out)
+NARROW int delta_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2825,8 +2747,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1, 2};
 static const real sizes_tau[] = {1.0, 1.0, 4.0};
 
-int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
-    real *wrench, real *tau_out)
+NARROW int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -2875,8 +2797,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {16.0, 16.0, 16.0};
 
-int delta_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau, const
-    real *wrench, real *A_out)
+NARROW int delta_forward_dynamics(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2932,8 +2854,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int delta_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *completed_out)
+NARROW int delta_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2946,8 +2868,8 @@ int delta_complete_acceleration(const prepared *m, const real *X, const real *V,
     return finished(NV, completed, completed_out, &why);
 }
 
-int delta_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const real
-    *wrench, real *forces_out)
+NARROW int delta_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
@@ -2965,7 +2887,7 @@ int delta_leg_reactions(const prepared *m, const real *X, const real *V, const r
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+NARROW int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
@@ -2984,7 +2906,7 @@ int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_
     return final_status(&why, 1, potential_out);
 }
 
-int delta_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int delta_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
@@ -3003,7 +2925,8 @@ int delta_condition(const prepared *m, const real *X, real *sigma_out, real *leg
     return final_status(&why, NL, legs_out);
 }
 
-int delta_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
+NARROW int delta_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
         singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
@@ -3024,7 +2947,7 @@ int delta_manipulability(const prepared *m, const real *X, real *measure_out, re
     return final_status(&why, 1, isotropy_out);
 }
 
-int delta_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+NARROW int delta_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
     *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
@@ -3046,7 +2969,7 @@ int delta_singularity_distance(const prepared *m, const real *X, real *actuators
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2};
@@ -3067,7 +2990,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -3124,8 +3047,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int delta_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int delta_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -3135,7 +3058,8 @@ int delta_forward_kinematics(const prepared *m, const real *q_actuated, const re
     return finished(NQ, X, X_out, &why);
 }
 
-int delta_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
+NARROW int delta_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
     (void)m;
     (void)X;
@@ -3150,7 +3074,7 @@ int delta_dissipation(const prepared *m, const real *X, const real *V, real *dis
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int delta_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int delta_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -3161,7 +3085,7 @@ int delta_momentum(const prepared *m, const real *X, const real *V, real *moment
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -3177,7 +3101,7 @@ int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
     return final_status(&why, NJ, margins_out);
 }
 
-int delta_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int delta_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -3191,7 +3115,7 @@ int delta_within_limits(const prepared *m, const real *X, real *within_out)
     return finished(1, within, within_out, &why);
 }
 
-int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -3202,7 +3126,7 @@ int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
     return finished(NU, q, q_out, &why);
 }
 
-int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3213,8 +3137,8 @@ int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *
     return finished(NU, qd, qd_out, &why);
 }
 
-int delta_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd_out)
+NARROW int delta_actuator_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3225,7 +3149,8 @@ int delta_actuator_accelerations(const prepared *m, const real *X, const real *V
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int delta_power(const prepared *m, const real *X, const real *V, const real *tau, real *power_out)
+NARROW int delta_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -3237,7 +3162,7 @@ int delta_power(const prepared *m, const real *X, const real *V, const real *tau
     return finished(1, power, power_out, &why);
 }
 
-int delta_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int delta_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -3249,7 +3174,7 @@ int delta_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int delta_difference(const real *X0, const real *X1, real *step_out)
+NARROW int delta_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] CLEARED;
     status_flags why;
@@ -3261,7 +3186,7 @@ int delta_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && FIVEBAR_OFFSET_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && FIVEBAR_OFFSET_LANES >= 4 && VECTORS_OF(FIVEBAR_OFFSET_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -274,11 +291,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -287,10 +306,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -392,11 +412,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -631,8 +648,9 @@ static int acceptable(const fivebar_offset_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_model *model)
 {
@@ -651,8 +669,8 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     real b_c_rrr_in_platform_x = 0;
     real b_c_rrr_in_platform_y = 0;
     real legs_size_rrr = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -665,154 +683,131 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         const size_t own = leg;
-        const real crank_base_point_x = params->crank_base_point[own][0];
-        const real crank_base_point_y = params->crank_base_point[own][1];
-        const real crank_base_frame_xx = params->crank_base_frame[own][0][0];
-        const real crank_base_frame_xy = params->crank_base_frame[own][0][1];
-        const real crank_base_frame_yx = params->crank_base_frame[own][1][0];
-        const real crank_base_frame_yy = params->crank_base_frame[own][1][1];
-        const real crank_platform_point_x = params->crank_platform_point[own][0];
-        const real crank_platform_point_y = params->crank_platform_point[own][1];
-        const real crank_platform_joint_offset_x = params->crank_platform_joint_offset[own][0];
+        KEEP_OF_LEG(crank_base_point_x, params->crank_base_point[own][0]);
+        KEEP_OF_LEG(crank_base_point_y, params->crank_base_point[own][1]);
+        KEEP_OF_LEG(crank_base_frame_xx, params->crank_base_frame[own][0][0]);
+        KEEP_OF_LEG(crank_base_frame_xy, params->crank_base_frame[own][0][1]);
+        KEEP_OF_LEG(crank_base_frame_yx, params->crank_base_frame[own][1][0]);
+        KEEP_OF_LEG(crank_base_frame_yy, params->crank_base_frame[own][1][1]);
+        KEEP_OF_LEG(crank_platform_point_x, params->crank_platform_point[own][0]);
+        KEEP_OF_LEG(crank_platform_point_y, params->crank_platform_point[own][1]);
+        KEEP_OF_LEG(crank_platform_joint_offset_x, params->crank_platform_joint_offset[own][0]);
         const real crank_link1_mass = params->crank_link1_mass[own];
         const real crank_link1_centre_of_mass_x = params->crank_link1_centre_of_mass[own][0];
         const real crank_link1_centre_of_mass_y = params->crank_link1_centre_of_mass[own][1];
         const real crank_link1_inertia_zz = params->crank_link1_inertia[own][2][2];
         /* (crank-size) length of the leg's lever arms, the measure of what is near singular */
-        const real crank_size_t = crank_platform_joint_offset_x*crank_platform_joint_offset_x;
+        KEEP_OF_LEG(crank_size_t, crank_platform_joint_offset_x*crank_platform_joint_offset_x);
         const real crank_size_t_2 = R(5.257946636889999e-07) + crank_size_t;
         const real crank_size = root(crank_size_t_2);
         /* (crank-h_1) first moment of link 1 about the origin of link 1 */
-        const real crank_h_1_in_spec1_x = crank_link1_centre_of_mass_x*crank_link1_mass;
-        const real crank_h_1_in_spec1_y = crank_link1_centre_of_mass_y*crank_link1_mass;
+        KEEP_OF_LEG(crank_h_1_in_spec1_x, crank_link1_centre_of_mass_x*crank_link1_mass);
+        KEEP_OF_LEG(crank_h_1_in_spec1_y, crank_link1_centre_of_mass_y*crank_link1_mass);
         /* (crank-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real crank_J_1_t = crank_link1_centre_of_mass_x*crank_link1_centre_of_mass_x +
             crank_link1_centre_of_mass_y*crank_link1_centre_of_mass_y;
-        const real crank_J_1_in_spec1_zz = crank_link1_inertia_zz + crank_J_1_t*crank_link1_mass;
+        KEEP_OF_LEG(crank_J_1_in_spec1_zz, crank_link1_inertia_zz + crank_J_1_t*crank_link1_mass);
         /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
-        const real crank_root_1_t = crank_size*crank_size*crank_size_t_2;
-        const real inv_crank_root_1_t = 1/crank_root_1_t;
+        KEEP_OF_LEG(crank_root_1_t, crank_size*crank_size*crank_size_t_2);
+        KEEP_OF_LEG(inv_crank_root_1_t, 1/crank_root_1_t);
         /* (crank-n_c) direction of the constraint force */
-        const real crank_n_c_in_axes1_x = -crank_platform_joint_offset_x/(root(crank_size_t));
+        KEEP_OF_LEG(crank_n_c_in_axes1_x, -crank_platform_joint_offset_x/(root(crank_size_t)));
         /* (crank-w_1) reciprocal vector 1 */
-        const real crank_w_1_in_axes1_y = 1/crank_platform_joint_offset_x;
+        KEEP_OF_LEG(crank_w_1_in_axes1_y, 1/crank_platform_joint_offset_x);
         /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crank_mu_1_t = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y;
-        const real crank_mu_1_t_2 = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y;
+        KEEP_OF_LEG(crank_mu_1_t, crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y);
+        KEEP_OF_LEG(crank_mu_1_t_2, crank_base_frame_xy*gravity_x +
+            crank_base_frame_yy*gravity_y);
         /* (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all degrees of freedom */
-        const real crank_d_G_in_axes1_yy =
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*crank_w_1_in_axes1_y;
+        KEEP_OF_LEG(crank_d_G_in_axes1_yy,
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*crank_w_1_in_axes1_y);
         /* (potential) potential energy */
-        const real crank_potential_t = crank_base_point_x*crank_link1_mass;
-        const real crank_potential_t_2 = crank_base_point_y*crank_link1_mass;
-        KEEP_OF_LEG(crank_J_1_in_spec1_zz);
-        KEEP_OF_LEG(crank_base_frame_xx);
-        KEEP_OF_LEG(crank_base_frame_xy);
-        KEEP_OF_LEG(crank_base_frame_yx);
-        KEEP_OF_LEG(crank_base_frame_yy);
-        KEEP_OF_LEG(crank_base_point_x);
-        KEEP_OF_LEG(crank_base_point_y);
-        KEEP_OF_LEG(crank_d_G_in_axes1_yy);
-        KEEP_OF_LEG(crank_h_1_in_spec1_x);
-        KEEP_OF_LEG(crank_h_1_in_spec1_y);
-        KEEP_OF_LEG(crank_mu_1_t);
-        KEEP_OF_LEG(crank_mu_1_t_2);
-        KEEP_OF_LEG(crank_n_c_in_axes1_x);
-        KEEP_OF_LEG(crank_platform_joint_offset_x);
-        KEEP_OF_LEG(crank_platform_point_x);
-        KEEP_OF_LEG(crank_platform_point_y);
-        KEEP_OF_LEG(crank_potential_t);
-        KEEP_OF_LEG(crank_potential_t_2);
-        KEEP_OF_LEG(crank_root_1_t);
-        KEEP_OF_LEG(crank_size_t);
-        KEEP_OF_LEG(crank_w_1_in_axes1_y);
-        KEEP_OF_LEG(inv_crank_root_1_t);
+        KEEP_OF_LEG(crank_potential_t, crank_base_point_x*crank_link1_mass);
+        KEEP_OF_LEG(crank_potential_t_2, crank_base_point_y*crank_link1_mass);
         b_c_crank_in_platform_x += crank_platform_point_x;
         b_c_crank_in_platform_y += crank_platform_point_y;
         legs_size_crank += crank_size_t_2;
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
-        const real rrr_base_point_x = params->rrr_base_point[own][0];
-        const real rrr_base_point_y = params->rrr_base_point[own][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        KEEP_OF_LEG(rrr_base_point_x, params->rrr_base_point[own][0]);
+        KEEP_OF_LEG(rrr_base_point_y, params->rrr_base_point[own][1]);
+        KEEP_OF_LEG(rrr_base_frame_xx, params->rrr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrr_base_frame_xy, params->rrr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrr_base_frame_yx, params->rrr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrr_base_frame_yy, params->rrr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrr_platform_point_x, params->rrr_platform_point[own][0]);
+        KEEP_OF_LEG(rrr_platform_point_y, params->rrr_platform_point[own][1]);
+        KEEP_OF_LEG(rrr_joint2_offset_x, params->rrr_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x, params->rrr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrr_link1_mass, params->rrr_link1_mass[own]);
         const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
         const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
         const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        KEEP_OF_LEG(rrr_link2_mass, params->rrr_link2_mass[own]);
         const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
         const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {-1};
-        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        KEEP_OF_LEG(rrr_branch_1, signs_rrr_branch_1[own]);
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         const real rrr_size_t_3 = R(5.257946636889999e-07) + rrr_size_t + rrr_size_t_2;
-        const real rrr_size = root(rrr_size_t_3);
+        KEEP_OF_LEG(rrr_size, root(rrr_size_t_3));
         /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x, rrr_link1_centre_of_mass_x*rrr_link1_mass);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y, rrr_link1_centre_of_mass_y*rrr_link1_mass);
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz, rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass);
         /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
             rrr_platform_joint_offset_x;
         /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x, rrr_link2_mass*rrr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y, rrr_link2_centre_of_mass_y*rrr_link2_mass);
         /* (rrr-J_2) inertia tensor of link 2 about the connection point */
         const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
             rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz, rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass);
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        KEEP_OF_LEG(rrr_Kd_1_t, R(0.5)*rrr_size_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2, R(0.5)*rrr_size_t_2);
         /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        KEEP_OF_LEG(rrr_rho2_1_t, rrr_size*rrr_size*rrr_size_t_3);
         /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = 1/rrr_size_t;
+        KEEP_OF_LEG(inv_rrr_size_t, 1/rrr_size_t);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        KEEP_OF_LEG(inv_rrr_size_t_2, 1/rrr_size_t_2);
         /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y, 1/rrr_platform_joint_offset_x);
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy, -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y);
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz, rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz);
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
-        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        KEEP_OF_LEG(rrr_d_Gamma_2_t, rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x);
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        KEEP_OF_LEG(rrr_mu_1_t, gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_mu_1_t_2, gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
-        const real inv_rrr_size = 1/rrr_size;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t, 1/rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size, 1/rrr_size);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
-            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy, -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y);
         /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -822,47 +817,10 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
         /* (potential) */
-        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
-            rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
-            rrr_base_frame_yy*rrr_base_point_y;
-        KEEP_OF_LEG(inv_rrr_rho2_1_t);
-        KEEP_OF_LEG(inv_rrr_size);
-        KEEP_OF_LEG(inv_rrr_size_t);
-        KEEP_OF_LEG(inv_rrr_size_t_2);
-        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
-        KEEP_OF_LEG(rrr_Kd_1_t);
-        KEEP_OF_LEG(rrr_Kd_1_t_2);
-        KEEP_OF_LEG(rrr_base_frame_xx);
-        KEEP_OF_LEG(rrr_base_frame_xy);
-        KEEP_OF_LEG(rrr_base_frame_yx);
-        KEEP_OF_LEG(rrr_base_frame_yy);
-        KEEP_OF_LEG(rrr_base_point_x);
-        KEEP_OF_LEG(rrr_base_point_y);
-        KEEP_OF_LEG(rrr_branch_1);
-        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
-        KEEP_OF_LEG(rrr_d_Gamma_2_t);
-        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrr_joint2_offset_x);
-        KEEP_OF_LEG(rrr_link1_mass);
-        KEEP_OF_LEG(rrr_link2_mass);
-        KEEP_OF_LEG(rrr_mu_1_t);
-        KEEP_OF_LEG(rrr_mu_1_t_2);
-        KEEP_OF_LEG(rrr_platform_joint_offset_x);
-        KEEP_OF_LEG(rrr_platform_point_x);
-        KEEP_OF_LEG(rrr_platform_point_y);
-        KEEP_OF_LEG(rrr_potential_t);
-        KEEP_OF_LEG(rrr_potential_t_2);
-        KEEP_OF_LEG(rrr_rho2_1_t);
-        KEEP_OF_LEG(rrr_size);
-        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_potential_t, rrr_base_frame_xx*rrr_base_point_x +
+            rrr_base_frame_yx*rrr_base_point_y);
+        KEEP_OF_LEG(rrr_potential_t_2, rrr_base_frame_xy*rrr_base_point_x +
+            rrr_base_frame_yy*rrr_base_point_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -873,34 +831,23 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
     /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
-    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
+    KEEP(J_star_zz, J_star_in_platform_xx - J_star_t_5);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.5)*b_c_crank_in_platform_x +
-        R(0.5)*b_c_rrr_in_platform_x;
-    const real b_c_in_platform_y = R(0.5)*b_c_crank_in_platform_y +
-        R(0.5)*b_c_rrr_in_platform_y;
+    KEEP(b_c_in_platform_x, R(0.5)*b_c_crank_in_platform_x + R(0.5)*b_c_rrr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.5)*b_c_crank_in_platform_y + R(0.5)*b_c_rrr_in_platform_y);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.5)*legs_size_crank + R(0.5)*legs_size_rrr);
-    KEEP(J_star_zz);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(R(0.5)*legs_size_crank + R(0.5)*legs_size_rrr));
     return OK;
 }
 
@@ -1451,7 +1398,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_2 = X[2*w + k];
     v->R_xx = cosine(X_2);
     v->R_yx = sine(X_2);
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
     v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
 }
@@ -1501,13 +1448,13 @@ INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const
         m->crank_base_frame_xx[i]*v->crank_s_1;
     v->axis_x_crank_axes1_x = m->crank_base_frame_yy[i]*v->crank_c_1 -
         m->crank_base_frame_yx[i]*v->crank_s_1;
-    /* (crank-n_c) direction of the constraint force */
+    /* (crank-n_c) */
     v->crank_n_c_x = v->axis_x_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
     v->crank_n_c_y = -v->axis_y_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
-    /* (crank-w_1) reciprocal vector 1 */
+    /* (crank-w_1) */
     v->crank_w_1_x = v->axis_y_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
     v->crank_w_1_y = v->axis_x_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
-    /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (crank-mu_1) */
     v->crank_mu_1_t_3 = m->crank_h_1_in_spec1_x[i]*(v->crank_c_1*m->crank_mu_1_t_2[i] -
         m->crank_mu_1_t[i]*v->crank_s_1) -
         m->crank_h_1_in_spec1_y[i]*(v->crank_c_1*m->crank_mu_1_t[i] +
@@ -1531,7 +1478,7 @@ INLINE void stage_crank_A_X(size_t w, size_t j, const real *A, values_crank *v)
 INLINE void stage_crank_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
     real *V, values_crank *v)
 {
-    /* (crank-S_dot) velocity of the connection point */
+    /* (crank-S_dot) */
     const real omega_z = V[2*w + j];
     const real t_dot_x = V[0*w + j];
     const real crank_S_dot_x = t_dot_x - v->crank_q_y*omega_z;
@@ -1591,7 +1538,7 @@ INLINE void stage_crank_M_dynamics(const prepared *m, size_t i, values_crank *v)
 
 INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank *v)
 {
-    /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (crank-mu_1) */
     const real crank_mu_1_in_axes1_z = m->crank_J_1_in_spec1_zz[i]*v->crank_qdd_1 -
         v->crank_mu_1_t_3;
     /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
@@ -1626,8 +1573,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
     const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
+    /* (rrr-Kd_1) */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
     const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
@@ -1636,7 +1582,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
+    /* (rrr-rho2_1) */
     v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
@@ -1647,10 +1593,10 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    /* (rrr-x_2) */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (rrr-c_2) */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrr_s_2_t =
@@ -1675,7 +1621,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rrr_axes2_x*m->gravity_y;
     v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
         v->axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
     v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
@@ -1697,7 +1643,7 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-S_dot) velocity of the connection point */
+    /* (rrr-S_dot) */
     const real omega_z = V[2*w + j];
     const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
     const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
@@ -1750,7 +1696,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-u_1) centripetal acceleration of the connection point */
+    /* (rrr-u_1) */
     const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
         v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
     const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
@@ -1795,17 +1741,16 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
         v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-w_2) reciprocal vector 2 */
+    /* (rrr-w_2) */
     const real rrr_w_2_in_axes2_x =
         v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (rrr-d_Gamma_2) */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
     const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
@@ -1813,8 +1758,7 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        inertia and weight */
     const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrr-d_c) */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
@@ -1829,10 +1773,10 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
     v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
 }
 
@@ -1840,24 +1784,22 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
     const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
-    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rrr-acc_2) */
     v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
         v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
         m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
@@ -1882,10 +1824,10 @@ INLINE void any_sums_crank(size_t k, size_t count, int add, const values_crank *
     gather(&terms[0*count + k], add, v->crank_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->crank_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->crank_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->crank_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->crank_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->crank_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
@@ -1894,57 +1836,113 @@ INLINE void any_sums_crank_2(size_t k, size_t count, int add, const values_crank
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v->crank_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->crank_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->crank_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_crank(size_t k, size_t count, const values_crank *v, real *o)
 {
-    /* (crank-w_1) reciprocal vector 1 */
+    /* (crank-w_1) */
     o[0*count + k] = v->crank_w_1_x;
     o[1*count + k] = v->crank_w_1_y;
-    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    /* (crank-H_a_1) */
     o[2*count + k] = v->crank_H_a_1_z;
 }
 
 INLINE void any_entries_crank_2(size_t k, size_t count, const values_crank *v, real *o)
 {
-    /* (crank-n_c) direction of the constraint force */
+    /* (crank-n_c) */
     o[0*count + k] = v->crank_n_c_x;
     o[1*count + k] = v->crank_n_c_y;
-    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    /* (crank-Hk_a_1) */
     o[2*count + k] = v->crank_Hk_a_1_z;
 }
 
 INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
 {
-    /* (M_tt) translational block of M */
+    /* (M_tt) */
     gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
 INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrr-H_a_1) */
     o[2*count + k] = v->rrr_H_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void any_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1993,7 +1991,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
@@ -2064,59 +2062,15 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[4*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[3*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[5*w + k];
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[6*w + k];
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[7*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-        + (Z_t_y + Z_a_z)));
+    any_after(m, w, k, s + 3*w, sums, M, t);
+    any_after_2(w, k, s + 5*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)8)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_crank[SUMS_OF_dynamics*LEGS(LEGS_OF_crank)] CLEARED, o_crank[9*LEGS(LEGS_OF_crank)]
@@ -2226,41 +2180,13 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[4*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[3*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+    any_after(m, w, k, s + 3*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)5)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_crank[SUMS_OF_M*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
@@ -2292,7 +2218,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2334,10 +2260,10 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    /* (Z_q) */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[3*w + k] = Z_p_x;
     s[4*w + k] = Z_p_y;
@@ -2371,23 +2297,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[3*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[4*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[5*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
+    any_after_2(w, k, s + 3*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)6)
@@ -2426,7 +2336,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2501,7 +2411,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)3)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
@@ -2581,7 +2491,7 @@ INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const re
 
 #define PASSED_IN_Hk ((size_t)3)
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
+NARROW APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
     real s[PASSED_IN_Hk] CLEARED;
     real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
@@ -2625,12 +2535,10 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, si
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
-    /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
-       accelerations */
+    /* (crank-rel_o) */
     const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*v.crank_u_1_x -
         v.axis_y_crank_axes1_x*v.crank_u_1_y + v.crank_S_dot_in_axes1_y*v.crank_qd_1;
-    /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (crank-gamma_c1) */
     const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
     /* (crank-gamma_c1) */
     o[0*count + k] = crank_gamma_c1;
@@ -2697,7 +2605,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_x = t_ddot_x - m->gravity_x;
     const real t_ddot_y = A[1*w + k];
     const real a_t_y = t_ddot_y - m->gravity_y;
-    /* (f_p) inertia force of the platform less its weight */
+    /* (f_p) */
     const real alpha_z = A[2*w + k];
     const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y - v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
@@ -2718,9 +2626,9 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
     stage_crank_V_X(m, w, i, j, s, V, &v);
     stage_crank_A_V_X(m, i, &v);
     stage_crank_legs_required(m, i, &v);
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real crank_R_a_t = v.crank_c_t_2*v.crank_q_x - v.crank_c_t*v.crank_q_y;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.crank_c_t);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.crank_c_t_2);  /* R_t_y_of_legs */
     /* (R_a) */
@@ -2753,8 +2661,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
         v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
@@ -2784,7 +2691,7 @@ INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_t = sums[3*w + k];
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[3*w + k];
@@ -2793,7 +2700,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y + R_t_y_of_legs - R_t_t_2;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2848,8 +2755,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_crank[7*LANES];
@@ -2940,7 +2847,8 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
 
 #define PASSED_IN_inverse_kinematics ((size_t)3)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
@@ -3003,7 +2911,7 @@ INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
-    /* (crank-qd_1) rate of joint 1 */
+    /* (crank-qd_1) */
     o[0*count + k] = v.crank_qd_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
@@ -3024,9 +2932,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-qd_1) */
     o[0*count + k] = -v.rrr_qd_1_t;
-    /* (rrr-qd_2) rate of joint 2 */
+    /* (rrr-qd_2) */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3046,8 +2954,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
 
 #define PASSED_IN_joint_rates ((size_t)3)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
@@ -3112,7 +3020,7 @@ INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i
     stage_crank_A_X(w, j, A, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
     stage_crank_A_V_X(m, i, &v);
-    /* (crank-qdd_1) acceleration of joint 1 */
+    /* (crank-qdd_1) */
     o[0*count + k] = v.crank_qdd_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
@@ -3135,9 +3043,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
-    /* (rrr-qdd_1) acceleration of joint 1 */
+    /* (rrr-qdd_1) */
     o[0*count + k] = -v.rrr_qdd_1_t;
-    /* (rrr-qdd_2) acceleration of joint 2 */
+    /* (rrr-qdd_2) */
     o[1*count + k] = v.rrr_qdd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3157,8 +3065,8 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 
 #define PASSED_IN_joint_accelerations ((size_t)3)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
@@ -3240,7 +3148,8 @@ INLINE void constraints_place_crank(size_t w, size_t k, size_t at, size_t count,
 
 #define PASSED_IN_constraints ((size_t)3)
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
+NARROW APART void constraints_run(const prepared *m, const real *X, real *constraints,
+    status_flags *t)
 {
     real s[PASSED_IN_constraints] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
@@ -3287,14 +3196,13 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_crank_V_X(m, w, i, j, s, V, &v);
     stage_crank_A_V_X(m, i, &v);
     stage_crank_legs_required(m, i, &v);
-    /* (crank-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (crank-c) */
     o[0*count + k] = -v.crank_c_t;
     o[1*count + k] = -v.crank_c_t_2;
-    /* (crank-w_1) reciprocal vector 1 */
+    /* (crank-w_1) */
     o[2*count + k] = v.crank_w_1_x;
     o[3*count + k] = v.crank_w_1_y;
-    /* (crank-n_c) direction of the constraint force */
+    /* (crank-n_c) */
     o[4*count + k] = v.crank_n_c_x;
     o[5*count + k] = v.crank_n_c_y;
     o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
@@ -3334,7 +3242,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-c_true) */
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
@@ -3390,7 +3298,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
@@ -3499,7 +3407,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -3509,10 +3417,10 @@ INLINE void condition_legs_crank(const prepared *m, size_t w, size_t i, size_t j
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
-    /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
+    /* (crank-root_1) */
     const real crank_pivot_size = magnitude(v.crank_rho2_1);
     const real crank_pivot_root = root(crank_pivot_size*m->inv_crank_root_1_t[i]);
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real crank_spread_t = m->b_c_in_platform_x - m->crank_platform_point_x[i];
     const real crank_spread_t_2 = m->b_c_in_platform_y - m->crank_platform_point_y[i];
     const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
@@ -3548,8 +3456,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
     const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
     const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
@@ -3586,7 +3493,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_crank = sums[0*w + k];
     const real spread_rrr = sums[1*w + k];
     const real spread_ = root(R(0.5)*spread_crank + R(0.5)*spread_rrr);
@@ -3598,8 +3505,8 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 #define PASSED_IN_condition ((size_t)3)
 #define SUMS_OF_condition ((size_t)2)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_crank[SUMS_OF_condition*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)]
@@ -3635,7 +3542,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 /* ---- what users call, as steps over these ---- */
 
-int fivebar_offset_M(const prepared *m, const real *X, real *M_out)
+NARROW int fivebar_offset_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3658,7 +3565,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int fivebar_offset_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int fivebar_offset_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3682,7 +3589,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int fivebar_offset_H(const prepared *m, const real *X, real *H_out)
+NARROW int fivebar_offset_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3705,7 +3612,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int fivebar_offset_Hk(const prepared *m, const real *X, real *Hk_out)
+NARROW int fivebar_offset_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     status_flags why;
     start(1, &why);
@@ -3728,7 +3635,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
-int fivebar_offset_constraints(const prepared *m, const real *X, real *constraints_out)
+NARROW int fivebar_offset_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     status_flags why;
     start(1, &why);
@@ -3751,7 +3658,7 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     copy_side_by_side(1, constraints, constraints_out);
 }
 
-int fivebar_offset_constraint_bias(const prepared *m, const real *X, const real *V, real
+NARROW int fivebar_offset_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
     status_flags why;
@@ -3777,7 +3684,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     copy_side_by_side(1, constraint_bias, constraint_bias_out);
 }
 
-int fivebar_offset_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int fivebar_offset_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3800,7 +3707,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int fivebar_offset_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int fivebar_offset_joint_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3825,8 +3733,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int fivebar_offset_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int fivebar_offset_joint_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3852,8 +3760,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     real Hk[NV*NC] CLEARED, constraint_bias[1] CLEARED;
     status_flags why;
@@ -3941,8 +3849,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {0, 1, 2};
 static const real sizes_solve_1[] = {4.0, 4.0, 1.0};
 
-int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau_out, real *lambda_out)
+NARROW int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
@@ -4079,8 +3987,8 @@ INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_forward_dynamics_solve_1[] = {0, 1, 3, 2};
 static const real sizes_forward_dynamics_solve_1[] = {4.0, 4.0, 1.0, 0.25};
 
-int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out, real *lambda_out)
+NARROW int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[1]
@@ -4158,8 +4066,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed_out)
+NARROW int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -4172,8 +4080,8 @@ int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const
     return finished(NV, completed, completed_out, &why);
 }
 
-int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0};
@@ -4196,8 +4104,8 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
     return finished(NL*(NL + NC), forces, forces_out, &why);
 }
 
-int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real
+    *kinetic_out, real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -4215,7 +4123,8 @@ int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real 
     return final_status(&why, 1, potential_out);
 }
 
-int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4249,8 +4158,8 @@ int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, 
     return final_status(&why, NL, legs_out);
 }
 
-int fivebar_offset_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
-    *legs_out)
+NARROW int fivebar_offset_condition_constrained(const prepared *m, const real *X, real *sigma_out,
+    real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4285,7 +4194,7 @@ int fivebar_offset_condition_constrained(const prepared *m, const real *X, real 
     return final_status(&why, NL, legs_out);
 }
 
-int fivebar_offset_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int fivebar_offset_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
@@ -4337,8 +4246,8 @@ int fivebar_offset_manipulability(const prepared *m, const real *X, real *measur
     return final_status(&why, 1, isotropy_out);
 }
 
-int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *actuators_out,
-    real *legs_out)
+NARROW int fivebar_offset_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
@@ -4373,7 +4282,7 @@ int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, subtract_1[NU] CLEARED, wrap_turns_1[NU] CLEARED, constraints[1] CLEARED,
@@ -4397,7 +4306,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(3, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
@@ -4454,8 +4363,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
-    real *X_out)
+NARROW int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4465,7 +4374,7 @@ int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated,
     return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
+NARROW static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
     real constraints[1] CLEARED, residual[NC] CLEARED;
     status_flags why;
@@ -4478,7 +4387,7 @@ static int constraint_residual_one(const prepared *m, const real *X, real *resid
     return finished(NC, residual, residual_out, &why);
 }
 
-static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4535,7 +4444,7 @@ static int search_constraint_residual(const prepared *m, const real *start, real
 }
 
 
-int fivebar_offset_project(const prepared *m, const real *X, real *projected_out)
+NARROW int fivebar_offset_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     status_flags why;
@@ -4545,7 +4454,7 @@ int fivebar_offset_project(const prepared *m, const real *X, real *projected_out
     return finished(NQ, projected, projected_out, &why);
 }
 
-int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4561,7 +4470,8 @@ int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, 
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4572,7 +4482,7 @@ int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, rea
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4588,7 +4498,7 @@ int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins
     return final_status(&why, NJ, margins_out);
 }
 
-int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4602,7 +4512,7 @@ int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_
     return finished(1, within, within_out, &why);
 }
 
-int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED;
     status_flags why;
@@ -4613,7 +4523,8 @@ int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_
     return finished(NU, q, q_out, &why);
 }
 
-int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED;
     status_flags why;
@@ -4624,8 +4535,8 @@ int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *
     return finished(NU, qd, qd_out, &why);
 }
 
-int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED;
     status_flags why;
@@ -4636,8 +4547,8 @@ int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, cons
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int fivebar_offset_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int fivebar_offset_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4649,7 +4560,7 @@ int fivebar_offset_power(const prepared *m, const real *X, const real *V, const 
     return finished(1, power, power_out, &why);
 }
 
-int fivebar_offset_rotation(const real *X, real *R_out)
+NARROW int fivebar_offset_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     status_flags why;
@@ -4660,19 +4571,18 @@ int fivebar_offset_rotation(const real *X, real *R_out)
     return finished(4, R, R_out, &why);
 }
 
-int fivebar_offset_pose(const real *t, const real *R, real *X_out)
+NARROW int fivebar_offset_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
+    real angle_of_rotation_1[1] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 2, 1, t, angle_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     status_flags why;
     start(1, &why);
@@ -4681,7 +4591,7 @@ int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -4693,7 +4603,7 @@ int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
+NARROW int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] CLEARED, step[NV] CLEARED;
@@ -4710,7 +4620,7 @@ int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && FIVEBAR_PRISMATIC_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && FIVEBAR_PRISMATIC_LANES >= 4 && VECTORS_OF(FIVEBAR_PRISMATIC_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +293,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +308,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +414,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -593,8 +610,9 @@ static int acceptable(const fivebar_prismatic_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_prismatic_model *model)
 {
@@ -607,8 +625,8 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
     real h_star_y_of_legs = 0;
     real b_c_rpr_in_platform_x = 0;
     real b_c_rpr_in_platform_y = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -616,39 +634,35 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.5)*root(2);
+    KEEP(spread_t, R(0.5)*root(2));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.0606601717798212)*spread_t;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(legs_size);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.0606601717798212)*spread_t);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         const size_t own = leg;
-        const real rpr_base_point_x = params->rpr_base_point[own][0];
-        const real rpr_base_point_y = params->rpr_base_point[own][1];
-        const real rpr_base_frame_xx = params->rpr_base_frame[own][0][0];
-        const real rpr_base_frame_xy = params->rpr_base_frame[own][0][1];
-        const real rpr_base_frame_yx = params->rpr_base_frame[own][1][0];
-        const real rpr_base_frame_yy = params->rpr_base_frame[own][1][1];
-        const real rpr_platform_point_x = params->rpr_platform_point[own][0];
-        const real rpr_platform_point_y = params->rpr_platform_point[own][1];
-        const real rpr_link1_mass = params->rpr_link1_mass[own];
+        KEEP_OF_LEG(rpr_base_point_x, params->rpr_base_point[own][0]);
+        KEEP_OF_LEG(rpr_base_point_y, params->rpr_base_point[own][1]);
+        KEEP_OF_LEG(rpr_base_frame_xx, params->rpr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rpr_base_frame_xy, params->rpr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rpr_base_frame_yx, params->rpr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rpr_base_frame_yy, params->rpr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rpr_platform_point_x, params->rpr_platform_point[own][0]);
+        KEEP_OF_LEG(rpr_platform_point_y, params->rpr_platform_point[own][1]);
+        KEEP_OF_LEG(rpr_link1_mass, params->rpr_link1_mass[own]);
         const real rpr_link1_centre_of_mass_x = params->rpr_link1_centre_of_mass[own][0];
         const real rpr_link1_centre_of_mass_y = params->rpr_link1_centre_of_mass[own][1];
         const real rpr_link1_inertia_zz = params->rpr_link1_inertia[own][2][2];
-        const real rpr_link2_mass = params->rpr_link2_mass[own];
+        KEEP_OF_LEG(rpr_link2_mass, params->rpr_link2_mass[own]);
         const real rpr_link2_centre_of_mass_x = params->rpr_link2_centre_of_mass[own][0];
         const real rpr_link2_centre_of_mass_y = params->rpr_link2_centre_of_mass[own][1];
         const real rpr_link2_inertia_zz = params->rpr_link2_inertia[own][2][2];
         static const signed char signs_rpr_branch_1[] = {1, 1};
-        const real rpr_branch_1 = signs_rpr_branch_1[own];
+        KEEP_OF_LEG(rpr_branch_1, signs_rpr_branch_1[own]);
         /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
-        const real rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
+        KEEP_OF_LEG(rpr_h_1_in_spec1_x, rpr_link1_centre_of_mass_x*rpr_link1_mass);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_y, rpr_link1_centre_of_mass_y*rpr_link1_mass);
         /* (rpr-h_2) first moment of link 2 about the connection point */
-        const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
-        const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
+        KEEP_OF_LEG(rpr_h_2_in_spec1_x, rpr_link2_centre_of_mass_x*rpr_link2_mass);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_y, rpr_link2_centre_of_mass_y*rpr_link2_mass);
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
         const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x;
         const real rpr_J_group_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
@@ -660,51 +674,27 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
             rpr_J_group_1_t_5*rpr_link2_mass;
         const real rpr_J_group_1_in_axes1_yy = rpr_J_group_1_t*rpr_link1_mass +
             rpr_J_group_1_t_4*rpr_link2_mass;
-        const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
-            rpr_J_group_1_t_3*rpr_link1_mass + rpr_J_group_1_t_6*rpr_link2_mass;
+        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz, rpr_link1_inertia_zz + rpr_link2_inertia_zz +
+            rpr_J_group_1_t_3*rpr_link1_mass + rpr_J_group_1_t_6*rpr_link2_mass);
         /* (rpr-Sigma_1) second moment of mass of the links that turn with link 1 */
         const real rpr_Sigma_1_t = rpr_J_group_1_in_axes1_xx + rpr_J_group_1_in_axes1_yy +
             rpr_J_group_1_in_axes1_zz;
         const real rpr_Sigma_1_t_2 = R(0.5)*rpr_Sigma_1_t;
-        const real rpr_Sigma_1_in_axes1_xx = rpr_Sigma_1_t_2 - rpr_J_group_1_in_axes1_xx;
-        const real rpr_Sigma_1_in_axes1_yy = rpr_Sigma_1_t_2 - rpr_J_group_1_in_axes1_yy;
+        KEEP_OF_LEG(rpr_Sigma_1_in_axes1_xx, rpr_Sigma_1_t_2 - rpr_J_group_1_in_axes1_xx);
+        KEEP_OF_LEG(rpr_Sigma_1_in_axes1_yy, rpr_Sigma_1_t_2 - rpr_J_group_1_in_axes1_yy);
         /* (rpr-h_group_1) first moments of the links that turn with link 1 */
-        const real rpr_h_group_1_in_axes1_x = rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x;
-        const real rpr_h_group_1_in_axes1_y = rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y;
+        KEEP_OF_LEG(rpr_h_group_1_in_axes1_x, rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_group_1_in_axes1_y, rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y);
         /* (h_star) */
         const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
         const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
         /* (potential) potential energy */
-        const real rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
-        const real rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x +
-            rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x +
-            rpr_base_frame_yy*rpr_base_point_y;
-        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
-        KEEP_OF_LEG(rpr_Sigma_1_in_axes1_xx);
-        KEEP_OF_LEG(rpr_Sigma_1_in_axes1_yy);
-        KEEP_OF_LEG(rpr_base_frame_xx);
-        KEEP_OF_LEG(rpr_base_frame_xy);
-        KEEP_OF_LEG(rpr_base_frame_yx);
-        KEEP_OF_LEG(rpr_base_frame_yy);
-        KEEP_OF_LEG(rpr_base_point_x);
-        KEEP_OF_LEG(rpr_base_point_y);
-        KEEP_OF_LEG(rpr_branch_1);
-        KEEP_OF_LEG(rpr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rpr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rpr_h_2_in_spec1_x);
-        KEEP_OF_LEG(rpr_h_2_in_spec1_y);
-        KEEP_OF_LEG(rpr_h_group_1_in_axes1_x);
-        KEEP_OF_LEG(rpr_h_group_1_in_axes1_y);
-        KEEP_OF_LEG(rpr_link1_mass);
-        KEEP_OF_LEG(rpr_link2_mass);
-        KEEP_OF_LEG(rpr_platform_point_x);
-        KEEP_OF_LEG(rpr_platform_point_y);
-        KEEP_OF_LEG(rpr_potential_t);
-        KEEP_OF_LEG(rpr_potential_t_2);
-        KEEP_OF_LEG(rpr_potential_t_3);
-        KEEP_OF_LEG(rpr_potential_t_4);
+        KEEP_OF_LEG(rpr_potential_t, gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx);
+        KEEP_OF_LEG(rpr_potential_t_2, gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy);
+        KEEP_OF_LEG(rpr_potential_t_3, rpr_base_frame_xx*rpr_base_point_x +
+            rpr_base_frame_yx*rpr_base_point_y);
+        KEEP_OF_LEG(rpr_potential_t_4, rpr_base_frame_xy*rpr_base_point_x +
+            rpr_base_frame_yy*rpr_base_point_y);
         m_star_of_legs += rpr_link2_mass;
         h_star_x_of_legs += rpr_h_star_t;
         h_star_y_of_legs += rpr_h_star_t_2;
@@ -712,23 +702,16 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
         b_c_rpr_in_platform_y += rpr_platform_point_y;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_x = h_star_t + h_star_x_of_legs;
-    const real h_star_y = h_star_t_2 + h_star_y_of_legs;
+    KEEP(h_star_x, h_star_t + h_star_x_of_legs);
+    KEEP(h_star_y, h_star_t_2 + h_star_y_of_legs);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = -gravity_x*m_star;
-    const real Z_p_y = -gravity_y*m_star;
+    KEEP(Z_p_x, -gravity_x*m_star);
+    KEEP(Z_p_y, -gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.5)*b_c_rpr_in_platform_x;
-    const real b_c_in_platform_y = R(0.5)*b_c_rpr_in_platform_y;
-    KEEP(Z_p_x);
-    KEEP(Z_p_y);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_x);
-    KEEP(h_star_y);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.5)*b_c_rpr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.5)*b_c_rpr_in_platform_y);
     return OK;
 }
 
@@ -1180,7 +1163,7 @@ INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
 INLINE void stage_rpr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rpr *v)
 {
-    /* (rpr-S_dot) velocity of the connection point */
+    /* (rpr-S_dot) */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
     v->rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*t_dot_x + v->axis_x_rpr_axes1_y*t_dot_y;
@@ -1233,10 +1216,10 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rpr-acc_2) */
     v->rpr_acc_2_in_axes1_x = v->rpr_S_ddot_in_axes1_x - v->rpr_g_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_g_in_axes1_y;
-    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    /* (rpr-phi_2) */
     v->rpr_phi_2_in_axes1_x = -v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rpr_mu_1_in_axes1_z = v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
@@ -1244,8 +1227,7 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
         v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
         v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
-    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rpr-c) */
     v->rpr_c_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*v->rpr_qdd_1 -
         v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
@@ -1300,6 +1282,37 @@ INLINE void any_entries_rpr(size_t k, size_t count, const values_rpr *v, real *o
     o[1*count + k] = v->axis_x_rpr_axes1_y;
 }
 
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *sums, real *M,
+    status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
+}
+
+INLINE void any_after_2(const prepared *m, size_t w, size_t k, const real *sums, real *Z,
+    status_flags *t)
+{
+    /* (Z_t) */
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    t->total[k] += Z_t_x + Z_t_y;
+}
+
 INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
@@ -1327,32 +1340,14 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
     *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[3*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[4*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
+    any_after(m, w, k, sums, M, t);
+    any_after_2(m, w, k, sums + 3*w, Z, t);
 }
 
 #define SUMS_OF_dynamics ((size_t)5)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real sums[SUMS_OF_dynamics] CLEARED;
     real terms_rpr[SUMS_OF_dynamics*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -1406,23 +1401,12 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
+    any_after(m, w, k, sums, M, t);
 }
 
 #define SUMS_OF_M ((size_t)3)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[SUMS_OF_M] CLEARED;
     real terms_rpr[SUMS_OF_M*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
@@ -1439,7 +1423,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real sums[SUMS_OF_M*LANES];
@@ -1477,15 +1461,7 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    t->total[k] += Z_t_x + Z_t_y;
+    any_after_2(m, w, k, sums, Z, t);
 }
 
 #define SUMS_OF_Z ((size_t)2)
@@ -1507,7 +1483,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real sums[SUMS_OF_Z*LANES];
@@ -1541,7 +1517,7 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y;
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1593,13 +1569,12 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
-    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rpr-c) */
     const real rpr_c_x = -v.axis_x_rpr_axes1_x*v.rpr_phi_2_in_axes1_x -
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
         v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
     any_entries_rpr(k, count, &v, o);
@@ -1617,7 +1592,7 @@ INLINE void required_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[0*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -1654,8 +1629,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rpr[3*LANES];
@@ -1686,7 +1661,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    /* (rpr-c_1) */
     const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
     /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
     const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
@@ -1694,7 +1669,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
     const real rpr_q_1 = angle(rpr_s_1, rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
-    /* (rpr-q_2) displacement of joint 2 */
+    /* (rpr-q_2) */
     o[1*count + k] = v.rpr_q_2;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
@@ -1710,7 +1685,8 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1745,7 +1721,7 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
-    /* (rpr-qd_1) rate of joint 1 */
+    /* (rpr-qd_1) */
     o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rpr_S_dot_in_axes1_x;
@@ -1763,8 +1739,8 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[3*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1801,9 +1777,9 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     stage_rpr_A_X(w, j, A, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_A_V_X(&v);
-    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    /* (rpr-rel) */
     const real rpr_rel_in_axes1_x = v.rpr_S_ddot_in_axes1_x + v.rpr_W_1_t*v.rpr_q_2;
-    /* (rpr-qdd_1) acceleration of joint 1 */
+    /* (rpr-qdd_1) */
     o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
@@ -1821,8 +1797,8 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[3*count + at];
 }
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1872,7 +1848,7 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rpr-c_true) */
     o[0*count + k] = rpr_c_true_x;
     o[1*count + k] = rpr_c_true_y;
-    /* (rpr-w_2) reciprocal vector 2 */
+    /* (rpr-w_2) */
     o[2*count + k] = v.axis_x_rpr_axes1_x;
     o[3*count + k] = v.axis_x_rpr_axes1_y;
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
@@ -1909,7 +1885,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 /* ---- potential ---- */
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->h_star_x + m->m_star*t_x) +
@@ -1922,9 +1898,9 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    /* (rpr-c_1) */
     const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    /* (rpr-s_1) */
     const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (potential) */
     const real rpr_potential_t_5 = (rpr_c_1*m->rpr_potential_t[i] +
@@ -1977,7 +1953,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
 INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
     *t)
 {
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -2020,7 +1996,7 @@ INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rpr = sums[0*w + k];
     const real spread_ = root(spread_rpr)*m->spread_t;
     /* (spread) */
@@ -2030,8 +2006,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real sums[SUMS_OF_condition] CLEARED;
     real terms_rpr[SUMS_OF_condition*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2052,7 +2028,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int fivebar_prismatic_M(const prepared *m, const real *X, real *M_out)
+NARROW int fivebar_prismatic_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2075,7 +2051,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int fivebar_prismatic_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int fivebar_prismatic_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2099,7 +2075,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int fivebar_prismatic_H(const prepared *m, const real *X, real *H_out)
+NARROW int fivebar_prismatic_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2122,7 +2098,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int fivebar_prismatic_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int fivebar_prismatic_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2145,7 +2121,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int fivebar_prismatic_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int fivebar_prismatic_joint_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2170,8 +2147,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int fivebar_prismatic_joint_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int fivebar_prismatic_joint_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2197,8 +2174,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int fivebar_prismatic_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int fivebar_prismatic_dynamics(const prepared *m, const real *X, const real *V, real
+    *M_out, real *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2260,8 +2237,8 @@ INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1};
 static const real sizes_tau[] = {1.0, 1.0};
 
-int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau_out)
+NARROW int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -2310,8 +2287,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1};
 static const real sizes_A[] = {4.0, 4.0};
 
-int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out)
+NARROW int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const real *V,
+    const real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2367,8 +2344,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed_out)
+NARROW int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, const real
+    *V, const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2381,8 +2358,8 @@ int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, co
     return finished(NV, completed, completed_out, &why);
 }
 
-int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *forces_out)
+NARROW int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
@@ -2400,8 +2377,8 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
     return finished(3*NL, forces, forces_out, &why);
 }
 
-int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
-    real *potential_out)
+NARROW int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, real
+    *kinetic_out, real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -2419,7 +2396,8 @@ int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, re
     return final_status(&why, 1, potential_out);
 }
 
-int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
@@ -2438,8 +2416,8 @@ int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_ou
     return final_status(&why, NL, legs_out);
 }
 
-int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out)
+NARROW int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *measure_out,
+    real *isotropy_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
         singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
@@ -2460,8 +2438,8 @@ int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *mea
     return final_status(&why, 1, isotropy_out);
 }
 
-int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, real *actuators_out,
-    real *legs_out)
+NARROW int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
         singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
@@ -2482,7 +2460,7 @@ int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, rea
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[2] = {0}, residual[NU] CLEARED;
@@ -2497,7 +2475,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -2554,8 +2532,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int fivebar_prismatic_forward_kinematics(const prepared *m, const real *q_actuated, const real
-    *X0, real *X_out)
+NARROW int fivebar_prismatic_forward_kinematics(const prepared *m, const real *q_actuated, const
+    real *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -2565,7 +2543,7 @@ int fivebar_prismatic_forward_kinematics(const prepared *m, const real *q_actuat
     return finished(NQ, X, X_out, &why);
 }
 
-int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -2581,7 +2559,7 @@ int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, real
+NARROW int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
@@ -2593,7 +2571,7 @@ int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, 
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -2609,7 +2587,7 @@ int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *marg
     return final_status(&why, NJ, margins_out);
 }
 
-int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -2623,7 +2601,7 @@ int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *with
     return finished(1, within, within_out, &why);
 }
 
-int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -2634,7 +2612,7 @@ int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real 
     return finished(NU, q, q_out, &why);
 }
 
-int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const real *V, real
+NARROW int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
@@ -2646,8 +2624,8 @@ int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const rea
     return finished(NU, qd, qd_out, &why);
 }
 
-int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, const real *V,
-    const real *A, real *qdd_out)
+NARROW int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, const real
+    *V, const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -2658,8 +2636,8 @@ int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, c
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, const real
+    *tau, real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -2671,7 +2649,7 @@ int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, con
     return finished(1, power, power_out, &why);
 }
 
-int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -2683,7 +2661,7 @@ int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
+NARROW int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] CLEARED;
     status_flags why;
@@ -2695,7 +2673,8 @@ int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s, real
+    *X_out)
 {
     real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && FIVEBAR_REVOLUTE_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && FIVEBAR_REVOLUTE_LANES >= 4 && VECTORS_OF(FIVEBAR_REVOLUTE_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -604,8 +621,9 @@ static int acceptable(const fivebar_revolute_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revolute_model *model)
 {
@@ -619,8 +637,8 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     real b_c_rrr_in_platform_x = 0;
     real b_c_rrr_in_platform_y = 0;
     real legs_size_rrr = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -628,132 +646,92 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.5)*root(2);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.5)*root(2));
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
-        const real rrr_base_point_x = params->rrr_base_point[own][0];
-        const real rrr_base_point_y = params->rrr_base_point[own][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        KEEP_OF_LEG(rrr_base_point_x, params->rrr_base_point[own][0]);
+        KEEP_OF_LEG(rrr_base_point_y, params->rrr_base_point[own][1]);
+        KEEP_OF_LEG(rrr_base_frame_xx, params->rrr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrr_base_frame_xy, params->rrr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrr_base_frame_yx, params->rrr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrr_base_frame_yy, params->rrr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrr_platform_point_x, params->rrr_platform_point[own][0]);
+        KEEP_OF_LEG(rrr_platform_point_y, params->rrr_platform_point[own][1]);
+        KEEP_OF_LEG(rrr_joint2_offset_x, params->rrr_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x, params->rrr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrr_link1_mass, params->rrr_link1_mass[own]);
         const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
         const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
         const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        KEEP_OF_LEG(rrr_link2_mass, params->rrr_link2_mass[own]);
         const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
         const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1, -1};
-        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        KEEP_OF_LEG(rrr_branch_1, signs_rrr_branch_1[own]);
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         const real rrr_size_t_3 = R(5.257946636889999e-07) + rrr_size_t + rrr_size_t_2;
-        const real rrr_size = root(rrr_size_t_3);
+        KEEP_OF_LEG(rrr_size, root(rrr_size_t_3));
         /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x, rrr_link1_centre_of_mass_x*rrr_link1_mass);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y, rrr_link1_centre_of_mass_y*rrr_link1_mass);
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz, rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass);
         /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
             rrr_platform_joint_offset_x;
         /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x, rrr_link2_mass*rrr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y, rrr_link2_centre_of_mass_y*rrr_link2_mass);
         /* (rrr-J_2) inertia tensor of link 2 about the connection point */
         const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
             rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz, rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass);
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        KEEP_OF_LEG(rrr_Kd_1_t, R(0.5)*rrr_size_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2, R(0.5)*rrr_size_t_2);
         /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        KEEP_OF_LEG(rrr_rho2_1_t, rrr_size*rrr_size*rrr_size_t_3);
         /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = 1/rrr_size_t;
+        KEEP_OF_LEG(inv_rrr_size_t, 1/rrr_size_t);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        KEEP_OF_LEG(inv_rrr_size_t_2, 1/rrr_size_t_2);
         /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y, 1/rrr_platform_joint_offset_x);
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy, -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y);
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz, rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz);
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
-        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        KEEP_OF_LEG(rrr_d_Gamma_2_t, rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x);
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        KEEP_OF_LEG(rrr_mu_1_t, gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_mu_1_t_2, gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
-        const real inv_rrr_size = 1/rrr_size;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t, 1/rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size, 1/rrr_size);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
-            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy, -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y);
         /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
         /* (potential) potential energy */
-        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
-            rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
-            rrr_base_frame_yy*rrr_base_point_y;
-        KEEP_OF_LEG(inv_rrr_rho2_1_t);
-        KEEP_OF_LEG(inv_rrr_size);
-        KEEP_OF_LEG(inv_rrr_size_t);
-        KEEP_OF_LEG(inv_rrr_size_t_2);
-        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
-        KEEP_OF_LEG(rrr_Kd_1_t);
-        KEEP_OF_LEG(rrr_Kd_1_t_2);
-        KEEP_OF_LEG(rrr_base_frame_xx);
-        KEEP_OF_LEG(rrr_base_frame_xy);
-        KEEP_OF_LEG(rrr_base_frame_yx);
-        KEEP_OF_LEG(rrr_base_frame_yy);
-        KEEP_OF_LEG(rrr_base_point_x);
-        KEEP_OF_LEG(rrr_base_point_y);
-        KEEP_OF_LEG(rrr_branch_1);
-        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
-        KEEP_OF_LEG(rrr_d_Gamma_2_t);
-        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrr_joint2_offset_x);
-        KEEP_OF_LEG(rrr_link1_mass);
-        KEEP_OF_LEG(rrr_link2_mass);
-        KEEP_OF_LEG(rrr_mu_1_t);
-        KEEP_OF_LEG(rrr_mu_1_t_2);
-        KEEP_OF_LEG(rrr_platform_joint_offset_x);
-        KEEP_OF_LEG(rrr_platform_point_x);
-        KEEP_OF_LEG(rrr_platform_point_y);
-        KEEP_OF_LEG(rrr_potential_t);
-        KEEP_OF_LEG(rrr_potential_t_2);
-        KEEP_OF_LEG(rrr_rho2_1_t);
-        KEEP_OF_LEG(rrr_size);
-        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_potential_t, rrr_base_frame_xx*rrr_base_point_x +
+            rrr_base_frame_yx*rrr_base_point_y);
+        KEEP_OF_LEG(rrr_potential_t_2, rrr_base_frame_xy*rrr_base_point_x +
+            rrr_base_frame_yy*rrr_base_point_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_x_of_legs += rrr_h_star_t;
         h_star_y_of_legs += rrr_h_star_t_2;
@@ -762,26 +740,18 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_x = h_star_t + h_star_x_of_legs;
-    const real h_star_y = h_star_t_2 + h_star_y_of_legs;
+    KEEP(h_star_x, h_star_t + h_star_x_of_legs);
+    KEEP(h_star_y, h_star_t_2 + h_star_y_of_legs);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = -gravity_x*m_star;
-    const real Z_p_y = -gravity_y*m_star;
+    KEEP(Z_p_x, -gravity_x*m_star);
+    KEEP(Z_p_y, -gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.5)*b_c_rrr_in_platform_x;
-    const real b_c_in_platform_y = R(0.5)*b_c_rrr_in_platform_y;
+    KEEP(b_c_in_platform_x, R(0.5)*b_c_rrr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.5)*b_c_rrr_in_platform_y);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_rrr)*spread_t;
-    KEEP(Z_p_x);
-    KEEP(Z_p_y);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_x);
-    KEEP(h_star_y);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_rrr)*spread_t);
     return OK;
 }
 
@@ -1216,8 +1186,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_S_x = m->rrr_platform_point_x[i] + t_x - m->rrr_base_point_x[i];
     const real t_y = X[1*w + j];
     const real rrr_S_y = m->rrr_platform_point_y[i] + t_y - m->rrr_base_point_y[i];
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
+    /* (rrr-Kd_1) */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
     const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
@@ -1226,7 +1195,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
+    /* (rrr-rho2_1) */
     v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
@@ -1237,10 +1206,10 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    /* (rrr-x_2) */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (rrr-c_2) */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrr_s_2_t =
@@ -1265,7 +1234,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rrr_axes2_x*m->gravity_y;
     v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
         v->axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
     v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
@@ -1286,7 +1255,7 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-S_dot) velocity of the connection point */
+    /* (rrr-S_dot) */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
     const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*t_dot_x -
@@ -1363,24 +1332,22 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
     const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
-    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rrr-acc_2) */
     v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
         v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
         m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
@@ -1390,11 +1357,10 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-w_2) reciprocal vector 2 */
+    /* (rrr-w_2) */
     const real rrr_w_2_in_axes2_x =
         v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (rrr-d_Gamma_2) */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
     const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
@@ -1402,8 +1368,7 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        inertia and weight */
     const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrr-d_c) */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
@@ -1447,9 +1412,40 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
 
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *sums, real *M,
+    status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
+}
+
+INLINE void any_after_2(const prepared *m, size_t w, size_t k, const real *sums, real *Z,
+    status_flags *t)
+{
+    /* (Z_t) */
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    t->total[k] += Z_t_x + Z_t_y;
 }
 
 INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1481,32 +1477,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
     *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[3*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[4*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
+    any_after(m, w, k, sums, M, t);
+    any_after_2(m, w, k, sums + 3*w, Z, t);
 }
 
 #define SUMS_OF_dynamics ((size_t)5)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real sums[SUMS_OF_dynamics] CLEARED;
     real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -1561,23 +1539,12 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
+    any_after(m, w, k, sums, M, t);
 }
 
 #define SUMS_OF_M ((size_t)3)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[SUMS_OF_M] CLEARED;
     real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -1594,7 +1561,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real sums[SUMS_OF_M*LANES];
@@ -1633,15 +1600,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    t->total[k] += Z_t_x + Z_t_y;
+    any_after_2(m, w, k, sums, Z, t);
 }
 
 #define SUMS_OF_Z ((size_t)2)
@@ -1663,7 +1622,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real sums[SUMS_OF_Z*LANES];
@@ -1698,7 +1657,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = v.rrr_w_1_t + v.rrr_w_1_y;
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -1750,13 +1709,12 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
         v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
     any_entries_rrr(k, count, &v, o);
@@ -1776,7 +1734,7 @@ INLINE void required_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[0*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -1813,8 +1771,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrr[4*LANES];
@@ -1868,7 +1826,8 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -1903,9 +1862,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-qd_1) */
     o[0*count + k] = -v.rrr_qd_1_t;
-    /* (rrr-qd_2) rate of joint 2 */
+    /* (rrr-qd_2) */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -1923,8 +1882,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -1961,9 +1920,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
-    /* (rrr-qdd_1) acceleration of joint 1 */
+    /* (rrr-qdd_1) */
     o[0*count + k] = -v.rrr_qdd_1_t;
-    /* (rrr-qdd_2) acceleration of joint 2 */
+    /* (rrr-qdd_2) */
     o[1*count + k] = v.rrr_qdd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -1981,8 +1940,8 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -2032,7 +1991,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-c_true) */
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
@@ -2071,7 +2030,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 /* ---- potential ---- */
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->h_star_x + m->m_star*t_x) +
@@ -2135,7 +2094,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
 INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
     *t)
 {
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -2145,8 +2104,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
     const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
     const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
@@ -2182,7 +2140,7 @@ INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rrr = sums[0*w + k];
     const real spread_ = root(spread_rrr)*m->spread_t;
     /* (spread) */
@@ -2192,8 +2150,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real sums[SUMS_OF_condition] CLEARED;
     real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -2213,7 +2171,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int fivebar_revolute_M(const prepared *m, const real *X, real *M_out)
+NARROW int fivebar_revolute_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2236,7 +2194,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int fivebar_revolute_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int fivebar_revolute_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2260,7 +2218,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int fivebar_revolute_H(const prepared *m, const real *X, real *H_out)
+NARROW int fivebar_revolute_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2283,7 +2241,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int fivebar_revolute_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int fivebar_revolute_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2306,7 +2264,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int fivebar_revolute_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int fivebar_revolute_joint_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2331,8 +2290,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int fivebar_revolute_joint_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int fivebar_revolute_joint_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2358,8 +2317,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int fivebar_revolute_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int fivebar_revolute_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2421,8 +2380,8 @@ INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1};
 static const real sizes_tau[] = {1.0, 4.0};
 
-int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau_out)
+NARROW int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -2468,8 +2427,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NU, tau, tau_out);
 }
 
-int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out)
+NARROW int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const real *V,
+    const real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2525,8 +2484,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed_out)
+NARROW int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2539,8 +2498,8 @@ int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, con
     return finished(NV, completed, completed_out, &why);
 }
 
-int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
@@ -2558,8 +2517,8 @@ int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real 
     return finished(3*NL, forces, forces_out, &why);
 }
 
-int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
-    real *potential_out)
+NARROW int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, real
+    *kinetic_out, real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -2577,7 +2536,8 @@ int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, rea
     return final_status(&why, 1, potential_out);
 }
 
-int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
@@ -2596,8 +2556,8 @@ int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out
     return final_status(&why, NL, legs_out);
 }
 
-int fivebar_revolute_manipulability(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out)
+NARROW int fivebar_revolute_manipulability(const prepared *m, const real *X, real *measure_out,
+    real *isotropy_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
         singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
@@ -2618,8 +2578,8 @@ int fivebar_revolute_manipulability(const prepared *m, const real *X, real *meas
     return final_status(&why, 1, isotropy_out);
 }
 
-int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real *actuators_out,
-    real *legs_out)
+NARROW int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
         singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
@@ -2640,7 +2600,7 @@ int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1};
@@ -2661,7 +2621,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -2718,8 +2678,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
-    real *X_out)
+NARROW int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuated, const
+    real *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -2729,7 +2689,7 @@ int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuate
     return finished(NQ, X, X_out, &why);
 }
 
-int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -2745,7 +2705,8 @@ int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -2756,7 +2717,7 @@ int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, r
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -2772,7 +2733,7 @@ int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margi
     return final_status(&why, NJ, margins_out);
 }
 
-int fivebar_revolute_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int fivebar_revolute_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -2786,7 +2747,7 @@ int fivebar_revolute_within_limits(const prepared *m, const real *X, real *withi
     return finished(1, within, within_out, &why);
 }
 
-int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -2797,7 +2758,8 @@ int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *
     return finished(NU, q, q_out, &why);
 }
 
-int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -2808,8 +2770,8 @@ int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real
     return finished(NU, qd, qd_out, &why);
 }
 
-int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, const real
+    *V, const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -2820,8 +2782,8 @@ int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, co
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int fivebar_revolute_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int fivebar_revolute_power(const prepared *m, const real *X, const real *V, const real
+    *tau, real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -2833,7 +2795,7 @@ int fivebar_revolute_power(const prepared *m, const real *X, const real *V, cons
     return finished(1, power, power_out, &why);
 }
 
-int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -2845,7 +2807,7 @@ int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
+NARROW int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] CLEARED;
     status_flags why;
@@ -2857,7 +2819,8 @@ int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, real
+    *X_out)
 {
     real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

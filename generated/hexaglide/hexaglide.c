@@ -53,10 +53,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HEXAGLIDE_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HEXAGLIDE_LANES >= 4 && VECTORS_OF(HEXAGLIDE_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +72,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -275,11 +285,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -288,10 +300,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -393,11 +406,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -638,8 +648,9 @@ static int acceptable(const hexaglide_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
 {
@@ -661,9 +672,9 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     real b_c_pus_in_platform_y = 0;
     real b_c_pus_in_platform_z = 0;
     real legs_size_pus = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -690,34 +701,30 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.16666666666666666)*root(6);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.16666666666666666)*root(6));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_pus); ++leg) {
         const size_t own = leg < LEGS_OF_pus ? leg : 0;
-        const real pus_base_point_x = params->pus_base_point[own][0];
-        const real pus_base_point_y = params->pus_base_point[own][1];
-        const real pus_base_point_z = params->pus_base_point[own][2];
-        const real pus_base_frame_xx = params->pus_base_frame[own][0][0];
-        const real pus_base_frame_xy = params->pus_base_frame[own][0][1];
-        const real pus_base_frame_xz = params->pus_base_frame[own][0][2];
-        const real pus_base_frame_yx = params->pus_base_frame[own][1][0];
-        const real pus_base_frame_yy = params->pus_base_frame[own][1][1];
-        const real pus_base_frame_yz = params->pus_base_frame[own][1][2];
-        const real pus_base_frame_zx = params->pus_base_frame[own][2][0];
-        const real pus_base_frame_zy = params->pus_base_frame[own][2][1];
-        const real pus_base_frame_zz = params->pus_base_frame[own][2][2];
-        const real pus_platform_point_x = params->pus_platform_point[own][0];
-        const real pus_platform_point_y = params->pus_platform_point[own][1];
-        const real pus_platform_point_z = params->pus_platform_point[own][2];
-        const real pus_platform_joint_offset_x = params->pus_platform_joint_offset[own][0];
-        const real pus_link1_mass = params->pus_link1_mass[own];
+        KEEP_OF_LEG(pus_base_point_x, params->pus_base_point[own][0]);
+        KEEP_OF_LEG(pus_base_point_y, params->pus_base_point[own][1]);
+        KEEP_OF_LEG(pus_base_point_z, params->pus_base_point[own][2]);
+        KEEP_OF_LEG(pus_base_frame_xx, params->pus_base_frame[own][0][0]);
+        KEEP_OF_LEG(pus_base_frame_xy, params->pus_base_frame[own][0][1]);
+        KEEP_OF_LEG(pus_base_frame_xz, params->pus_base_frame[own][0][2]);
+        KEEP_OF_LEG(pus_base_frame_yx, params->pus_base_frame[own][1][0]);
+        KEEP_OF_LEG(pus_base_frame_yy, params->pus_base_frame[own][1][1]);
+        KEEP_OF_LEG(pus_base_frame_yz, params->pus_base_frame[own][1][2]);
+        KEEP_OF_LEG(pus_base_frame_zx, params->pus_base_frame[own][2][0]);
+        KEEP_OF_LEG(pus_base_frame_zy, params->pus_base_frame[own][2][1]);
+        KEEP_OF_LEG(pus_base_frame_zz, params->pus_base_frame[own][2][2]);
+        KEEP_OF_LEG(pus_platform_point_x, params->pus_platform_point[own][0]);
+        KEEP_OF_LEG(pus_platform_point_y, params->pus_platform_point[own][1]);
+        KEEP_OF_LEG(pus_platform_point_z, params->pus_platform_point[own][2]);
+        KEEP_OF_LEG(pus_platform_joint_offset_x, params->pus_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(pus_link1_mass, params->pus_link1_mass[own]);
         const real pus_link1_centre_of_mass_x = params->pus_link1_centre_of_mass[own][0];
         const real pus_link1_centre_of_mass_y = params->pus_link1_centre_of_mass[own][1];
         const real pus_link1_centre_of_mass_z = params->pus_link1_centre_of_mass[own][2];
-        const real pus_link3_mass = params->pus_link3_mass[own];
+        KEEP_OF_LEG(pus_link3_mass, params->pus_link3_mass[own]);
         const real pus_link3_centre_of_mass_x = params->pus_link3_centre_of_mass[own][0];
         const real pus_link3_centre_of_mass_y = params->pus_link3_centre_of_mass[own][1];
         const real pus_link3_centre_of_mass_z = params->pus_link3_centre_of_mass[own][2];
@@ -728,75 +735,75 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real pus_link3_inertia_yz = params->pus_link3_inertia[own][1][2];
         const real pus_link3_inertia_zz = params->pus_link3_inertia[own][2][2];
         static const signed char signs_pus_branch_1[] = {-1, -1, -1, -1, -1, -1};
-        const real pus_branch_1 = signs_pus_branch_1[own];
+        KEEP_OF_LEG(pus_branch_1, signs_pus_branch_1[own]);
         static const signed char signs_pus_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real pus_branch_2 = signs_pus_branch_2[own];
+        KEEP_OF_LEG(pus_branch_2, signs_pus_branch_2[own]);
         /* (pus-size) length of the leg's lever arms, the measure of what is near singular */
-        const real pus_size_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
-        const real pus_size_t_2 = R(4.9e-07) + pus_size_t;
-        const real pus_size = root(pus_size_t_2);
+        KEEP_OF_LEG(pus_size_t, pus_platform_joint_offset_x*pus_platform_joint_offset_x);
+        KEEP_OF_LEG(pus_size_t_2, R(4.9e-07) + pus_size_t);
+        KEEP_OF_LEG(pus_size, root(pus_size_t_2));
         /* (pus-h_1) first moment of link 1 about the origin of link 1 */
-        const real pus_h_1_in_spec0_x = pus_link1_centre_of_mass_x*pus_link1_mass;
-        const real pus_h_1_in_spec0_y = pus_link1_centre_of_mass_y*pus_link1_mass;
-        const real pus_h_1_in_spec0_z = pus_link1_centre_of_mass_z*pus_link1_mass;
+        KEEP_OF_LEG(pus_h_1_in_spec0_x, pus_link1_centre_of_mass_x*pus_link1_mass);
+        KEEP_OF_LEG(pus_h_1_in_spec0_y, pus_link1_centre_of_mass_y*pus_link1_mass);
+        KEEP_OF_LEG(pus_h_1_in_spec0_z, pus_link1_centre_of_mass_z*pus_link1_mass);
         /* (pus-rho_tip_3) connection point to the centre of mass of link 3 */
         const real pus_rho_tip_3_in_spec3_x = pus_link3_centre_of_mass_x -
             pus_platform_joint_offset_x;
         /* (pus-h_3) first moment of link 3 about the connection point */
-        const real pus_h_3_in_spec3_x = pus_link3_mass*pus_rho_tip_3_in_spec3_x;
-        const real pus_h_3_in_spec3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
-        const real pus_h_3_in_spec3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
+        KEEP_OF_LEG(pus_h_3_in_spec3_x, pus_link3_mass*pus_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(pus_h_3_in_spec3_y, pus_link3_centre_of_mass_y*pus_link3_mass);
+        KEEP_OF_LEG(pus_h_3_in_spec3_z, pus_link3_centre_of_mass_z*pus_link3_mass);
         /* (pus-J_3) inertia tensor of link 3 about the connection point */
         const real pus_J_3_t = pus_rho_tip_3_in_spec3_x*pus_rho_tip_3_in_spec3_x;
         const real pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y;
         const real pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z;
         const real pus_J_3_t_4 = pus_J_3_t + pus_J_3_t_2 + pus_J_3_t_3;
-        const real pus_J_3_in_spec3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t -
-            pus_J_3_t_4);
-        const real pus_J_3_in_spec3_xy = pus_link3_inertia_xy -
-            pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_in_spec3_x;
-        const real pus_J_3_in_spec3_xz = pus_link3_inertia_xz -
-            pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_in_spec3_x;
+        KEEP_OF_LEG(pus_J_3_in_spec3_xx, pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t -
+            pus_J_3_t_4));
+        KEEP_OF_LEG(pus_J_3_in_spec3_xy, pus_link3_inertia_xy -
+            pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(pus_J_3_in_spec3_xz, pus_link3_inertia_xz -
+            pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_in_spec3_x);
         const real pus_J_3_in_spec3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 -
             pus_J_3_t_4);
-        const real pus_J_3_in_spec3_yz = pus_link3_inertia_yz -
-            pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
-        const real pus_J_3_in_spec3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 -
-            pus_J_3_t_4);
+        KEEP_OF_LEG(pus_J_3_in_spec3_yz, pus_link3_inertia_yz -
+            pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass);
+        KEEP_OF_LEG(pus_J_3_in_spec3_zz, pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 -
+            pus_J_3_t_4));
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = 1/pus_size_t;
+        KEEP_OF_LEG(inv_pus_size_t, 1/pus_size_t);
         /* (pus-w_3) reciprocal vector 3 */
-        const real pus_w_3_in_axes3_y = 1/pus_platform_joint_offset_x;
+        KEEP_OF_LEG(pus_w_3_in_axes3_y, 1/pus_platform_joint_offset_x);
         /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real pus_g_in_axes0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
-            gravity_z*pus_base_frame_zx;
+        KEEP_OF_LEG(pus_g_in_axes0_x, gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
+            gravity_z*pus_base_frame_zx);
         /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real pus_g_in_axes0_y = gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy +
-            gravity_z*pus_base_frame_zy;
-        const real pus_g_in_axes0_z = gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
-            gravity_z*pus_base_frame_zz;
+        KEEP_OF_LEG(pus_g_in_axes0_y, gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy +
+            gravity_z*pus_base_frame_zy);
+        KEEP_OF_LEG(pus_g_in_axes0_z, gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
+            gravity_z*pus_base_frame_zz);
         /* (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real pus_d_phi_3_in_axes3_xy = pus_h_3_in_spec3_z*pus_w_3_in_axes3_y;
+        KEEP_OF_LEG(pus_d_phi_3_in_axes3_xy, pus_h_3_in_spec3_z*pus_w_3_in_axes3_y);
         /* (pus-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real pus_Sigma_3_t = pus_J_3_in_spec3_xx + pus_J_3_in_spec3_yy +
             pus_J_3_in_spec3_zz;
         const real pus_Sigma_3_t_2 = R(0.5)*pus_Sigma_3_t;
-        const real pus_Sigma_3_in_axes3_xx = pus_Sigma_3_t_2 - pus_J_3_in_spec3_xx;
-        const real pus_Sigma_3_in_axes3_yy = pus_Sigma_3_t_2 - pus_J_3_in_spec3_zz;
-        const real pus_Sigma_3_in_axes3_zz = pus_Sigma_3_t_2 - pus_J_3_in_spec3_yy;
+        KEEP_OF_LEG(pus_Sigma_3_in_axes3_xx, pus_Sigma_3_t_2 - pus_J_3_in_spec3_xx);
+        KEEP_OF_LEG(pus_Sigma_3_in_axes3_yy, pus_Sigma_3_t_2 - pus_J_3_in_spec3_zz);
+        KEEP_OF_LEG(pus_Sigma_3_in_axes3_zz, pus_Sigma_3_t_2 - pus_J_3_in_spec3_yy);
         /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real pus_d_Gamma_3_t = pus_J_3_in_spec3_yy*pus_w_3_in_axes3_y;
-        const real pus_d_Gamma_3_in_axes3_y = pus_d_Gamma_3_t + pus_h_3_in_spec3_x;
+        KEEP_OF_LEG(pus_d_Gamma_3_t, pus_J_3_in_spec3_yy*pus_w_3_in_axes3_y);
+        KEEP_OF_LEG(pus_d_Gamma_3_in_axes3_y, pus_d_Gamma_3_t + pus_h_3_in_spec3_x);
         /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_pus_size_t_2 = 1/pus_size_t_2;
-        const real inv_pus_size = 1/pus_size;
+        KEEP_OF_LEG(inv_pus_size_t_2, 1/pus_size_t_2);
+        KEEP_OF_LEG(inv_pus_size, 1/pus_size);
         /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real pus_d_c_in_axes3_yy = -pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_y -
-            pus_h_3_in_spec3_x*pus_w_3_in_axes3_y;
+        KEEP_OF_LEG(pus_d_c_in_axes3_yy, -pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_y -
+            pus_h_3_in_spec3_x*pus_w_3_in_axes3_y);
         /* (h_star) */
         const real pus_h_star_t = pus_link3_mass*pus_platform_point_x;
         const real pus_h_star_t_2 = pus_link3_mass*pus_platform_point_y;
@@ -813,133 +820,63 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real pus_J_star_t_9 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
         const real pus_J_star_t_10 = pus_link3_mass*(pus_J_star_t_3 - pus_J_star_t_4);
         /* (potential) potential energy */
-        const real pus_b_in_axes0_x = pus_base_frame_xx*pus_base_point_x +
-            pus_base_frame_yx*pus_base_point_y + pus_base_frame_zx*pus_base_point_z;
-        const real pus_potential_t = pus_link1_mass*(pus_base_frame_xy*pus_base_point_x +
-            pus_base_frame_yy*pus_base_point_y + pus_base_frame_zy*pus_base_point_z);
-        const real pus_potential_t_2 = pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
-            pus_base_frame_yz*pus_base_point_y + pus_base_frame_zz*pus_base_point_z);
-        KEEP_OF_LEG(inv_pus_size);
-        KEEP_OF_LEG(inv_pus_size_t);
-        KEEP_OF_LEG(inv_pus_size_t_2);
-        KEEP_OF_LEG(pus_J_3_in_spec3_xx);
-        KEEP_OF_LEG(pus_J_3_in_spec3_xy);
-        KEEP_OF_LEG(pus_J_3_in_spec3_xz);
-        KEEP_OF_LEG(pus_J_3_in_spec3_yz);
-        KEEP_OF_LEG(pus_J_3_in_spec3_zz);
-        KEEP_OF_LEG(pus_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(pus_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(pus_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(pus_b_in_axes0_x);
-        KEEP_OF_LEG(pus_base_frame_xx);
-        KEEP_OF_LEG(pus_base_frame_xy);
-        KEEP_OF_LEG(pus_base_frame_xz);
-        KEEP_OF_LEG(pus_base_frame_yx);
-        KEEP_OF_LEG(pus_base_frame_yy);
-        KEEP_OF_LEG(pus_base_frame_yz);
-        KEEP_OF_LEG(pus_base_frame_zx);
-        KEEP_OF_LEG(pus_base_frame_zy);
-        KEEP_OF_LEG(pus_base_frame_zz);
-        KEEP_OF_LEG(pus_base_point_x);
-        KEEP_OF_LEG(pus_base_point_y);
-        KEEP_OF_LEG(pus_base_point_z);
-        KEEP_OF_LEG(pus_branch_1);
-        KEEP_OF_LEG(pus_branch_2);
-        KEEP_OF_LEG(pus_d_Gamma_3_in_axes3_y);
-        KEEP_OF_LEG(pus_d_Gamma_3_t);
-        KEEP_OF_LEG(pus_d_c_in_axes3_yy);
-        KEEP_OF_LEG(pus_d_phi_3_in_axes3_xy);
-        KEEP_OF_LEG(pus_g_in_axes0_x);
-        KEEP_OF_LEG(pus_g_in_axes0_y);
-        KEEP_OF_LEG(pus_g_in_axes0_z);
-        KEEP_OF_LEG(pus_h_1_in_spec0_x);
-        KEEP_OF_LEG(pus_h_1_in_spec0_y);
-        KEEP_OF_LEG(pus_h_1_in_spec0_z);
-        KEEP_OF_LEG(pus_h_3_in_spec3_x);
-        KEEP_OF_LEG(pus_h_3_in_spec3_y);
-        KEEP_OF_LEG(pus_h_3_in_spec3_z);
-        KEEP_OF_LEG(pus_link1_mass);
-        KEEP_OF_LEG(pus_link3_mass);
-        KEEP_OF_LEG(pus_platform_joint_offset_x);
-        KEEP_OF_LEG(pus_platform_point_x);
-        KEEP_OF_LEG(pus_platform_point_y);
-        KEEP_OF_LEG(pus_platform_point_z);
-        KEEP_OF_LEG(pus_potential_t);
-        KEEP_OF_LEG(pus_potential_t_2);
-        KEEP_OF_LEG(pus_size);
-        KEEP_OF_LEG(pus_size_t);
-        KEEP_OF_LEG(pus_size_t_2);
-        KEEP_OF_LEG(pus_w_3_in_axes3_y);
-        m_star_of_legs += leg < LEGS_OF_pus ? pus_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_pus ? pus_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_pus ? pus_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_pus ? pus_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_pus ? -pus_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_pus ? -pus_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_pus ? -pus_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_pus ? -pus_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_pus ? -pus_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_pus ? -pus_J_star_t_10 : 0;
-        b_c_pus_in_platform_x += leg < LEGS_OF_pus ? pus_platform_point_x : 0;
-        b_c_pus_in_platform_y += leg < LEGS_OF_pus ? pus_platform_point_y : 0;
-        b_c_pus_in_platform_z += leg < LEGS_OF_pus ? pus_platform_point_z : 0;
-        legs_size_pus += leg < LEGS_OF_pus ? pus_size_t_2 : 0;
+        KEEP_OF_LEG(pus_b_in_axes0_x, pus_base_frame_xx*pus_base_point_x +
+            pus_base_frame_yx*pus_base_point_y + pus_base_frame_zx*pus_base_point_z);
+        KEEP_OF_LEG(pus_potential_t, pus_link1_mass*(pus_base_frame_xy*pus_base_point_x +
+            pus_base_frame_yy*pus_base_point_y + pus_base_frame_zy*pus_base_point_z));
+        KEEP_OF_LEG(pus_potential_t_2, pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
+            pus_base_frame_yz*pus_base_point_y + pus_base_frame_zz*pus_base_point_z));
+        if (leg < LEGS_OF_pus) {
+            m_star_of_legs += pus_link3_mass;
+            h_star_in_platform_x_of_legs += pus_h_star_t;
+            h_star_in_platform_y_of_legs += pus_h_star_t_2;
+            h_star_in_platform_z_of_legs += pus_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -pus_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -pus_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -pus_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -pus_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -pus_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -pus_J_star_t_10;
+            b_c_pus_in_platform_x += pus_platform_point_x;
+            b_c_pus_in_platform_y += pus_platform_point_y;
+            b_c_pus_in_platform_z += pus_platform_point_z;
+            legs_size_pus += pus_size_t_2;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_pus_in_platform_x;
-    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_pus_in_platform_y;
-    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_pus_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.16666666666666666)*b_c_pus_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.16666666666666666)*b_c_pus_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.16666666666666666)*b_c_pus_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_pus)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_pus)*spread_t);
     return OK;
 }
 
@@ -1540,14 +1477,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1586,7 +1523,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1670,7 +1607,7 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->pus_c_2 = -inv_pus_rho2_2*v->pus_q_1_t*pus_root_2;
     /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
     v->pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-    /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+    /* (pus-c_3) */
     v->pus_c_3 = m->inv_pus_size_t[i]*m->pus_platform_joint_offset_x[i]*pus_root_2;
     /* (pus-q_3) displacement of joint 3 */
     v->pus_e_2_in_axes3_x =
@@ -1706,7 +1643,7 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->pus_w_1_z = v->axis_x_pus_axes3_z*v->pus_w_1_in_axes3_x;
     /* (pus-w_2) reciprocal vector 2 */
     v->pus_w_2_in_axes3_z = 1/v->pus_v_2_in_axes3_z;
-    /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (pus-acc_3) */
     const real pus_acc_3_t = v->pus_c_2*m->pus_g_in_axes0_x[i] +
         m->pus_g_in_axes0_y[i]*v->pus_s_2;
     v->pus_g_in_axes3_z = v->pus_c_2*m->pus_g_in_axes0_y[i] -
@@ -1920,24 +1857,22 @@ INLINE void stage_pus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
 
 INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
 {
-    /* (pus-J_3) inertia tensor of link 3 about the connection point */
+    /* (pus-J_3) */
     const real pus_J_3_in_axes2_yz = m->pus_J_3_in_spec3_xy[i]*v->pus_e_2_in_axes3_x +
         m->pus_J_3_in_spec3_yz[i]*v->pus_c_3;
-    /* (pus-w_2) reciprocal vector 2 */
+    /* (pus-w_2) */
     const real pus_w_2_in_axes3_x = v->pus_s_2*v->pus_w_1_in_axes3_x*v->pus_w_2_in_axes3_z;
-    /* (pus-w_3) reciprocal vector 3 */
+    /* (pus-w_3) */
     const real pus_w_3_in_axes3_x =
         -v->pus_e_1_in_axes3_y*v->pus_w_1_in_axes3_x*m->pus_w_3_in_axes3_y[i];
     /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real pus_d_alpha_3_t = v->pus_c_3*v->pus_w_2_in_axes3_z;
-    /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
+    /* (pus-d_Gamma_3) */
     const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*v->pus_w_2_in_axes3_z;
     const real pus_d_Gamma_3_in_axes3_x = m->pus_h_3_in_spec3_z[i] -
         v->pus_w_1_in_axes3_x*(m->pus_d_Gamma_3_t[i]*v->pus_e_1_in_axes3_y -
         pus_d_Gamma_3_in_axes3_z*v->pus_s_2);
-    /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (pus-d_Gamma_2) */
     const real pus_d_Gamma_2_t_2 =
         v->pus_w_2_in_axes3_z*(v->pus_c_3*(m->pus_J_3_in_spec3_xz[i]*v->pus_e_2_in_axes3_x +
         m->pus_J_3_in_spec3_zz[i]*v->pus_c_3) -
@@ -1952,8 +1887,7 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
     /* (pus-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real pus_d_G_in_axes3_zy = pus_d_Gamma_2_in_axes3_y*v->pus_w_2_in_axes3_z;
-    /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (pus-d_c) */
     const real pus_d_c_in_axes3_xx = v->pus_c_3*m->pus_h_3_in_spec3_y[i]*pus_w_2_in_axes3_x -
         m->pus_link1_mass[i]*v->pus_w_1_in_axes3_x*v->pus_w_1_in_axes3_x -
         m->pus_h_3_in_spec3_z[i]*pus_w_3_in_axes3_x -
@@ -2030,13 +1964,13 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
     const real pus_B_3_in_axes3_yx = v->pus_W_3_in_axes3_xy + v->pus_qdd_3;
     const real pus_B_3_in_axes3_zx = v->pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
     const real pus_B_3_in_axes3_zy = v->pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
-    /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
+    /* (pus-acc_1) */
     const real pus_acc_1_in_axes0_x = v->pus_qdd_1 - m->pus_g_in_axes0_x[i];
-    /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (pus-acc_3) */
     v->pus_acc_3_in_axes3_x = v->pus_S_ddot_in_axes3_x - v->pus_g_in_axes3_x;
     v->pus_acc_3_in_axes3_y = v->pus_S_ddot_in_axes3_y - v->pus_g_in_axes3_y;
     v->pus_acc_3_in_axes3_z = v->pus_S_ddot_in_axes3_z - v->pus_g_in_axes3_z;
-    /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (pus-mu_3) */
     const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] -
         v->pus_acc_3_in_axes3_z*m->pus_h_3_in_spec3_z[i] -
         v->pus_acc_3_in_axes3_y*m->pus_h_3_in_spec3_y[i] - v->pus_mu_3_t_4 -
@@ -2055,13 +1989,11 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
         pus_B_3_in_axes3_xy*m->pus_Sigma_3_in_axes3_yy[i] -
         m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_t -
         m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_in_axes3_y;
-    /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (pus-G) */
     const real pus_G_t = v->pus_w_2_in_axes3_z*(v->pus_c_3*pus_mu_3_in_axes3_y -
         v->pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x);
     const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*m->pus_w_3_in_axes3_y[i];
-    /* (pus-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (pus-c) */
     v->pus_c_in_axes3_x = v->pus_c_t + pus_B_3_in_axes3_xy*m->pus_h_3_in_spec3_z[i] -
         pus_alpha_2_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
         v->pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*m->pus_link1_mass[i] -
@@ -2120,7 +2052,7 @@ INLINE void any_sums_pus(size_t k, size_t count, int add, const values_pus *v, r
     gather(&terms[3*count + k], add, v->pus_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->pus_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->pus_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->pus_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, v->pus_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, v->pus_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2129,7 +2061,7 @@ INLINE void any_sums_pus(size_t k, size_t count, int add, const values_pus *v, r
     gather(&terms[11*count + k], add, v->pus_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->pus_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->pus_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->pus_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->pus_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->pus_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2144,7 +2076,7 @@ INLINE void any_sums_pus_2(size_t k, size_t count, int add, const values_pus *v,
     gather(&terms[0*count + k], add, v->pus_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->pus_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->pus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->pus_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->pus_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->pus_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2152,11 +2084,11 @@ INLINE void any_sums_pus_2(size_t k, size_t count, int add, const values_pus *v,
 
 INLINE void any_entries_pus(size_t k, size_t count, const values_pus *v, real *o)
 {
-    /* (pus-w_1) reciprocal vector 1 */
+    /* (pus-w_1) */
     o[0*count + k] = v->pus_w_1_x;
     o[1*count + k] = v->pus_w_1_y;
     o[2*count + k] = v->pus_w_1_z;
-    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+    /* (pus-H_a_1) */
     o[3*count + k] = v->pus_H_a_1_x;
     o[4*count + k] = v->pus_H_a_1_y;
     o[5*count + k] = v->pus_H_a_1_z;
@@ -2167,6 +2099,136 @@ INLINE void any_singular_pus(const prepared *m, size_t i, size_t k, const values
     o[k] = UNLESS(magnitude(v->pus_rho2_2) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i]) +
         UNLESS(magnitude(v->pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
         UNLESS(magnitude(v->pus_e_1_in_axes3_x) > LEAST_1);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_pus_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2253,125 +2315,8 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
@@ -2441,97 +2386,7 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
@@ -2556,7 +2411,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2609,35 +2464,7 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2663,7 +2490,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2819,19 +2646,18 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     stage_pus_V_X(m, w, i, j, V, &v);
     stage_pus_A_V_X(m, w, i, j, s, A, &v);
     stage_pus_legs_required(m, i, &v);
-    /* (pus-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (pus-c) */
     const real pus_c_x = v.axis_y_pus_axes3_x*v.pus_c_in_axes3_y +
         v.axis_z_pus_axes3_x*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_x*v.pus_c_in_axes3_x;
     const real pus_c_y = v.axis_y_pus_axes3_y*v.pus_c_in_axes3_y +
         v.axis_z_pus_axes3_y*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_y*v.pus_c_in_axes3_x;
     const real pus_c_z = v.axis_y_pus_axes3_z*v.pus_c_in_axes3_y +
         v.axis_z_pus_axes3_z*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_z*v.pus_c_in_axes3_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real pus_R_a_t = pus_c_y*v.pus_q_z - pus_c_z*v.pus_q_y;
     const real pus_R_a_t_2 = pus_c_z*v.pus_q_x - pus_c_x*v.pus_q_z;
     const real pus_R_a_t_3 = pus_c_x*v.pus_q_y - pus_c_y*v.pus_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, pus_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, pus_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, pus_c_z);  /* R_t_z_of_legs */
@@ -2859,7 +2685,7 @@ INLINE void required_place_pus(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2869,7 +2695,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2916,8 +2742,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_pus[8*LANES];
@@ -2950,11 +2776,11 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t i, s
 {
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
-    /* (pus-q_1) displacement of joint 1 */
+    /* (pus-q_1) */
     const real pus_q_1 = v.pus_S_in_axes0_x + v.pus_q_1_t;
     /* (pus-q_2) displacement of joint 2 */
     const real pus_q_2 = angle(v.pus_s_2, v.pus_c_2);
-    /* (pus-q_3) displacement of joint 3 */
+    /* (pus-q_3) */
     const real pus_q_3 = angle(-v.pus_e_2_in_axes3_x, v.pus_c_3);
     /* (pus-q_1) */
     o[0*count + k] = pus_q_1;
@@ -3024,11 +2850,11 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t i, size_t j
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_V_X(m, w, i, j, V, &v);
-    /* (pus-qd_1) rate of joint 1 */
+    /* (pus-qd_1) */
     o[0*count + k] = v.pus_qd_1;
-    /* (pus-qd_2) rate of joint 2 */
+    /* (pus-qd_2) */
     o[1*count + k] = v.pus_qd_2;
-    /* (pus-qd_3) rate of joint 3 */
+    /* (pus-qd_3) */
     o[2*count + k] = v.pus_qd_3;
     o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 4*count);
@@ -3094,11 +2920,11 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t i, 
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_V_X(m, w, i, j, V, &v);
     stage_pus_A_V_X(m, w, i, j, s, A, &v);
-    /* (pus-qdd_1) acceleration of joint 1 */
+    /* (pus-qdd_1) */
     o[0*count + k] = v.pus_qdd_1;
-    /* (pus-qdd_2) acceleration of joint 2 */
+    /* (pus-qdd_2) */
     o[1*count + k] = -v.pus_qdd_2_t;
-    /* (pus-qdd_3) acceleration of joint 3 */
+    /* (pus-qdd_3) */
     o[2*count + k] = v.pus_qdd_3;
     o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 4*count);
@@ -3185,7 +3011,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = pus_c_true_x;
     o[1*count + k] = pus_c_true_y;
     o[2*count + k] = pus_c_true_z;
-    /* (pus-w_1) reciprocal vector 1 */
+    /* (pus-w_1) */
     o[3*count + k] = v.pus_w_1_x;
     o[4*count + k] = v.pus_w_1_y;
     o[5*count + k] = v.pus_w_1_z;
@@ -3230,7 +3056,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3245,7 +3071,7 @@ INLINE void potential_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
-    /* (pus-q_1) displacement of joint 1 */
+    /* (pus-q_1) */
     const real pus_q_1 = v.pus_S_in_axes0_x + v.pus_q_1_t;
     /* (potential) */
     const real pus_potential_t_3 = m->pus_g_in_axes0_z[i]*(m->pus_h_1_in_spec0_z[i] +
@@ -3311,7 +3137,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3322,8 +3148,7 @@ INLINE void condition_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
-    /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (pus-G) */
     const real pus_pivot_size = magnitude(v.pus_rho2_2);
     const real pus_pivot_size_2 = magnitude(v.pus_v_2_in_axes3_z);
     const real pus_pivot_size_3 = magnitude(v.pus_e_1_in_axes3_x);
@@ -3366,7 +3191,7 @@ INLINE void condition_place_pus(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_pus = sums[0*w + k];
     const real spread_ = root(spread_pus)*m->spread_t;
     /* (spread) */
@@ -4210,13 +4035,12 @@ int hexaglide_rotation(const real *X, real *R_out)
 
 int hexaglide_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
@@ -4235,13 +4059,12 @@ int hexaglide_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int hexaglide_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 

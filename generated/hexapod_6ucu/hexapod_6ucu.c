@@ -53,10 +53,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6UCU_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6UCU_LANES >= 4 && VECTORS_OF(HEXAPOD_6UCU_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +72,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -278,11 +288,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -291,10 +303,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -396,11 +409,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -640,8 +650,9 @@ static int acceptable(const hexapod_6ucu_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *model)
 {
@@ -662,9 +673,9 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     real b_c_ucu_in_platform_x = 0;
     real b_c_ucu_in_platform_y = 0;
     real b_c_ucu_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -691,35 +702,33 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.16666666666666666)*root(6);
+    KEEP(spread_t, R(0.16666666666666666)*root(6));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.9595917942265426)*spread_t;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(legs_size);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.9595917942265426)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ucu); ++leg) {
         const size_t own = leg < LEGS_OF_ucu ? leg : 0;
-        const real ucu_base_point_x = params->ucu_base_point[own][0];
-        const real ucu_base_point_y = params->ucu_base_point[own][1];
-        const real ucu_base_point_z = params->ucu_base_point[own][2];
-        const real ucu_base_frame_xx = params->ucu_base_frame[own][0][0];
-        const real ucu_base_frame_xy = params->ucu_base_frame[own][0][1];
-        const real ucu_base_frame_xz = params->ucu_base_frame[own][0][2];
-        const real ucu_base_frame_yx = params->ucu_base_frame[own][1][0];
-        const real ucu_base_frame_yy = params->ucu_base_frame[own][1][1];
-        const real ucu_base_frame_yz = params->ucu_base_frame[own][1][2];
-        const real ucu_base_frame_zx = params->ucu_base_frame[own][2][0];
-        const real ucu_base_frame_zy = params->ucu_base_frame[own][2][1];
-        const real ucu_base_frame_zz = params->ucu_base_frame[own][2][2];
-        const real ucu_platform_point_x = params->ucu_platform_point[own][0];
-        const real ucu_platform_point_y = params->ucu_platform_point[own][1];
-        const real ucu_platform_point_z = params->ucu_platform_point[own][2];
-        const real ucu_platform_joint_axis_platform_x = params->ucu_platform_joint_axis_platform[own][0];
-        const real ucu_platform_joint_axis_platform_y = params->ucu_platform_joint_axis_platform[own][1];
-        const real ucu_platform_joint_axis_platform_z = params->ucu_platform_joint_axis_platform[own][2];
-        const real ucu_link2_mass = params->ucu_link2_mass[own];
+        KEEP_OF_LEG(ucu_base_point_x, params->ucu_base_point[own][0]);
+        KEEP_OF_LEG(ucu_base_point_y, params->ucu_base_point[own][1]);
+        KEEP_OF_LEG(ucu_base_point_z, params->ucu_base_point[own][2]);
+        KEEP_OF_LEG(ucu_base_frame_xx, params->ucu_base_frame[own][0][0]);
+        KEEP_OF_LEG(ucu_base_frame_xy, params->ucu_base_frame[own][0][1]);
+        KEEP_OF_LEG(ucu_base_frame_xz, params->ucu_base_frame[own][0][2]);
+        KEEP_OF_LEG(ucu_base_frame_yx, params->ucu_base_frame[own][1][0]);
+        KEEP_OF_LEG(ucu_base_frame_yy, params->ucu_base_frame[own][1][1]);
+        KEEP_OF_LEG(ucu_base_frame_yz, params->ucu_base_frame[own][1][2]);
+        KEEP_OF_LEG(ucu_base_frame_zx, params->ucu_base_frame[own][2][0]);
+        KEEP_OF_LEG(ucu_base_frame_zy, params->ucu_base_frame[own][2][1]);
+        KEEP_OF_LEG(ucu_base_frame_zz, params->ucu_base_frame[own][2][2]);
+        KEEP_OF_LEG(ucu_platform_point_x, params->ucu_platform_point[own][0]);
+        KEEP_OF_LEG(ucu_platform_point_y, params->ucu_platform_point[own][1]);
+        KEEP_OF_LEG(ucu_platform_point_z, params->ucu_platform_point[own][2]);
+        KEEP_OF_LEG(ucu_platform_joint_axis_platform_x,
+            params->ucu_platform_joint_axis_platform[own][0]);
+        KEEP_OF_LEG(ucu_platform_joint_axis_platform_y,
+            params->ucu_platform_joint_axis_platform[own][1]);
+        KEEP_OF_LEG(ucu_platform_joint_axis_platform_z,
+            params->ucu_platform_joint_axis_platform[own][2]);
+        KEEP_OF_LEG(ucu_link2_mass, params->ucu_link2_mass[own]);
         const real ucu_link2_centre_of_mass_x = params->ucu_link2_centre_of_mass[own][0];
         const real ucu_link2_centre_of_mass_y = params->ucu_link2_centre_of_mass[own][1];
         const real ucu_link2_centre_of_mass_z = params->ucu_link2_centre_of_mass[own][2];
@@ -729,7 +738,7 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real ucu_link2_inertia_yy = params->ucu_link2_inertia[own][1][1];
         const real ucu_link2_inertia_yz = params->ucu_link2_inertia[own][1][2];
         const real ucu_link2_inertia_zz = params->ucu_link2_inertia[own][2][2];
-        const real ucu_link4_mass = params->ucu_link4_mass[own];
+        KEEP_OF_LEG(ucu_link4_mass, params->ucu_link4_mass[own]);
         const real ucu_link4_centre_of_mass_x = params->ucu_link4_centre_of_mass[own][0];
         const real ucu_link4_centre_of_mass_y = params->ucu_link4_centre_of_mass[own][1];
         const real ucu_link4_centre_of_mass_z = params->ucu_link4_centre_of_mass[own][2];
@@ -740,15 +749,15 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real ucu_link4_inertia_yz = params->ucu_link4_inertia[own][1][2];
         const real ucu_link4_inertia_zz = params->ucu_link4_inertia[own][2][2];
         static const signed char signs_ucu_branch_1[] = {1, 1, 1, 1, 1, 1};
-        const real ucu_branch_1 = signs_ucu_branch_1[own];
+        KEEP_OF_LEG(ucu_branch_1, signs_ucu_branch_1[own]);
         static const signed char signs_ucu_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real ucu_branch_2 = signs_ucu_branch_2[own];
+        KEEP_OF_LEG(ucu_branch_2, signs_ucu_branch_2[own]);
         static const signed char signs_ucu_branch_4[] = {1, 1, -1, -1, -1, -1};
-        const real ucu_branch_4 = signs_ucu_branch_4[own];
+        KEEP_OF_LEG(ucu_branch_4, signs_ucu_branch_4[own]);
         /* (ucu-h_2) first moment of link 2 about the origin of link 2 */
-        const real ucu_h_2_in_spec2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass;
-        const real ucu_h_2_in_spec2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass;
-        const real ucu_h_2_in_spec2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass;
+        KEEP_OF_LEG(ucu_h_2_in_spec2_x, ucu_link2_centre_of_mass_x*ucu_link2_mass);
+        KEEP_OF_LEG(ucu_h_2_in_spec2_y, ucu_link2_centre_of_mass_y*ucu_link2_mass);
+        KEEP_OF_LEG(ucu_h_2_in_spec2_z, ucu_link2_centre_of_mass_z*ucu_link2_mass);
         /* (ucu-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real ucu_J_2_t = ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_x;
         const real ucu_J_2_t_2 = ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_y;
@@ -756,61 +765,61 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real ucu_J_2_t_4 = ucu_J_2_t + ucu_J_2_t_2 + ucu_J_2_t_3;
         const real ucu_J_2_in_spec2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t -
             ucu_J_2_t_4);
-        const real ucu_J_2_in_spec2_xy = ucu_link2_inertia_xy -
-            ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_y*ucu_link2_mass;
-        const real ucu_J_2_in_spec2_xz = ucu_link2_inertia_xz -
-            ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_z*ucu_link2_mass;
-        const real ucu_J_2_in_spec2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 -
-            ucu_J_2_t_4);
-        const real ucu_J_2_in_spec2_yz = ucu_link2_inertia_yz -
-            ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_z*ucu_link2_mass;
-        const real ucu_J_2_in_spec2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 -
-            ucu_J_2_t_4);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_xy, ucu_link2_inertia_xy -
+            ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_y*ucu_link2_mass);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_xz, ucu_link2_inertia_xz -
+            ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_z*ucu_link2_mass);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_yy, ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 -
+            ucu_J_2_t_4));
+        KEEP_OF_LEG(ucu_J_2_in_spec2_yz, ucu_link2_inertia_yz -
+            ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_z*ucu_link2_mass);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_zz, ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 -
+            ucu_J_2_t_4));
         /* (ucu-h_4) first moment of link 4 about the connection point */
-        const real ucu_h_4_in_spec4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass;
-        const real ucu_h_4_in_spec4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass;
-        const real ucu_h_4_in_spec4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        KEEP_OF_LEG(ucu_h_4_in_spec4_x, ucu_link4_centre_of_mass_x*ucu_link4_mass);
+        KEEP_OF_LEG(ucu_h_4_in_spec4_y, ucu_link4_centre_of_mass_y*ucu_link4_mass);
+        KEEP_OF_LEG(ucu_h_4_in_spec4_z, ucu_link4_centre_of_mass_z*ucu_link4_mass);
         /* (ucu-J_4) inertia tensor of link 4 about the connection point */
         const real ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x;
         const real ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y;
         const real ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z;
         const real ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3;
-        const real ucu_J_4_in_spec4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t -
-            ucu_J_4_t_4);
-        const real ucu_J_4_in_spec4_xy = ucu_link4_inertia_xy -
-            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass;
-        const real ucu_J_4_in_spec4_xz = ucu_link4_inertia_xz -
-            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass;
-        const real ucu_J_4_in_spec4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 -
-            ucu_J_4_t_4);
-        const real ucu_J_4_in_spec4_yz = ucu_link4_inertia_yz -
-            ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass;
-        const real ucu_J_4_in_spec4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 -
-            ucu_J_4_t_4);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_xx, ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t -
+            ucu_J_4_t_4));
+        KEEP_OF_LEG(ucu_J_4_in_spec4_xy, ucu_link4_inertia_xy -
+            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_xz, ucu_link4_inertia_xz -
+            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_yy, ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 -
+            ucu_J_4_t_4));
+        KEEP_OF_LEG(ucu_J_4_in_spec4_yz, ucu_link4_inertia_yz -
+            ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_zz, ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 -
+            ucu_J_4_t_4));
         /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real ucu_Jc_2_in_axes2_xx = ucu_J_2_in_spec2_xx + ucu_J_4_in_spec4_xx;
+        KEEP_OF_LEG(ucu_Jc_2_in_axes2_xx, ucu_J_2_in_spec2_xx + ucu_J_4_in_spec4_xx);
         /* (ucu-Sigma_4) second moment of mass of the links that turn with link 4 */
         const real ucu_Sigma_4_t = ucu_J_4_in_spec4_xx + ucu_J_4_in_spec4_yy +
             ucu_J_4_in_spec4_zz;
         const real ucu_Sigma_4_t_2 = R(0.5)*ucu_Sigma_4_t;
-        const real ucu_Sigma_4_in_axes4_xx = ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_yy;
-        const real ucu_Sigma_4_in_axes4_yy = ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_zz;
-        const real ucu_Sigma_4_in_axes4_zz = ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_xx;
+        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_xx, ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_yy);
+        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_zz);
+        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_zz, ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_xx);
         /* (ucu-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real ucu_Sigma_2_t = ucu_J_2_in_spec2_xx + ucu_J_2_in_spec2_yy +
             ucu_J_2_in_spec2_zz;
         const real ucu_Sigma_2_t_2 = R(0.5)*ucu_Sigma_2_t;
-        const real ucu_Sigma_2_in_axes2_xx = ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_xx;
-        const real ucu_Sigma_2_in_axes2_yy = ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_zz;
-        const real ucu_Sigma_2_in_axes2_zz = ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_yy;
+        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_xx, ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_xx);
+        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_zz);
+        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_zz, ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_yy);
         /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ucu_mu_2_t = gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx +
-            gravity_z*ucu_base_frame_zx;
-        const real ucu_mu_2_t_2 = gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy +
-            gravity_z*ucu_base_frame_zy;
-        const real ucu_mu_2_t_3 = gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz +
-            gravity_z*ucu_base_frame_zz;
+        KEEP_OF_LEG(ucu_mu_2_t, gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx +
+            gravity_z*ucu_base_frame_zx);
+        KEEP_OF_LEG(ucu_mu_2_t_2, gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy +
+            gravity_z*ucu_base_frame_zy);
+        KEEP_OF_LEG(ucu_mu_2_t_3, gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz +
+            gravity_z*ucu_base_frame_zz);
         /* (h_star) */
         const real ucu_h_star_t = ucu_link4_mass*ucu_platform_point_x;
         const real ucu_h_star_t_2 = ucu_link4_mass*ucu_platform_point_y;
@@ -827,131 +836,60 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real ucu_J_star_t_9 = ucu_link4_mass*ucu_platform_point_y*ucu_platform_point_z;
         const real ucu_J_star_t_10 = ucu_link4_mass*(ucu_J_star_t_3 - ucu_J_star_t_4);
         /* (potential) potential energy */
-        const real ucu_potential_t = ucu_base_frame_xx*ucu_base_point_x +
-            ucu_base_frame_yx*ucu_base_point_y + ucu_base_frame_zx*ucu_base_point_z;
-        const real ucu_potential_t_2 = ucu_base_frame_xy*ucu_base_point_x +
-            ucu_base_frame_yy*ucu_base_point_y + ucu_base_frame_zy*ucu_base_point_z;
-        const real ucu_potential_t_3 = ucu_base_frame_xz*ucu_base_point_x +
-            ucu_base_frame_yz*ucu_base_point_y + ucu_base_frame_zz*ucu_base_point_z;
-        KEEP_OF_LEG(ucu_J_2_in_spec2_xy);
-        KEEP_OF_LEG(ucu_J_2_in_spec2_xz);
-        KEEP_OF_LEG(ucu_J_2_in_spec2_yy);
-        KEEP_OF_LEG(ucu_J_2_in_spec2_yz);
-        KEEP_OF_LEG(ucu_J_2_in_spec2_zz);
-        KEEP_OF_LEG(ucu_J_4_in_spec4_xx);
-        KEEP_OF_LEG(ucu_J_4_in_spec4_xy);
-        KEEP_OF_LEG(ucu_J_4_in_spec4_xz);
-        KEEP_OF_LEG(ucu_J_4_in_spec4_yy);
-        KEEP_OF_LEG(ucu_J_4_in_spec4_yz);
-        KEEP_OF_LEG(ucu_J_4_in_spec4_zz);
-        KEEP_OF_LEG(ucu_Jc_2_in_axes2_xx);
-        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_xx);
-        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_yy);
-        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_zz);
-        KEEP_OF_LEG(ucu_base_frame_xx);
-        KEEP_OF_LEG(ucu_base_frame_xy);
-        KEEP_OF_LEG(ucu_base_frame_xz);
-        KEEP_OF_LEG(ucu_base_frame_yx);
-        KEEP_OF_LEG(ucu_base_frame_yy);
-        KEEP_OF_LEG(ucu_base_frame_yz);
-        KEEP_OF_LEG(ucu_base_frame_zx);
-        KEEP_OF_LEG(ucu_base_frame_zy);
-        KEEP_OF_LEG(ucu_base_frame_zz);
-        KEEP_OF_LEG(ucu_base_point_x);
-        KEEP_OF_LEG(ucu_base_point_y);
-        KEEP_OF_LEG(ucu_base_point_z);
-        KEEP_OF_LEG(ucu_branch_1);
-        KEEP_OF_LEG(ucu_branch_2);
-        KEEP_OF_LEG(ucu_branch_4);
-        KEEP_OF_LEG(ucu_h_2_in_spec2_x);
-        KEEP_OF_LEG(ucu_h_2_in_spec2_y);
-        KEEP_OF_LEG(ucu_h_2_in_spec2_z);
-        KEEP_OF_LEG(ucu_h_4_in_spec4_x);
-        KEEP_OF_LEG(ucu_h_4_in_spec4_y);
-        KEEP_OF_LEG(ucu_h_4_in_spec4_z);
-        KEEP_OF_LEG(ucu_link2_mass);
-        KEEP_OF_LEG(ucu_link4_mass);
-        KEEP_OF_LEG(ucu_mu_2_t);
-        KEEP_OF_LEG(ucu_mu_2_t_2);
-        KEEP_OF_LEG(ucu_mu_2_t_3);
-        KEEP_OF_LEG(ucu_platform_joint_axis_platform_x);
-        KEEP_OF_LEG(ucu_platform_joint_axis_platform_y);
-        KEEP_OF_LEG(ucu_platform_joint_axis_platform_z);
-        KEEP_OF_LEG(ucu_platform_point_x);
-        KEEP_OF_LEG(ucu_platform_point_y);
-        KEEP_OF_LEG(ucu_platform_point_z);
-        KEEP_OF_LEG(ucu_potential_t);
-        KEEP_OF_LEG(ucu_potential_t_2);
-        KEEP_OF_LEG(ucu_potential_t_3);
-        m_star_of_legs += leg < LEGS_OF_ucu ? ucu_link4_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_ucu ? ucu_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_ucu ? ucu_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_ucu ? ucu_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_ucu ? -ucu_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_ucu ? -ucu_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_ucu ? -ucu_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_ucu ? -ucu_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_ucu ? -ucu_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_ucu ? -ucu_J_star_t_10 : 0;
-        b_c_ucu_in_platform_x += leg < LEGS_OF_ucu ? ucu_platform_point_x : 0;
-        b_c_ucu_in_platform_y += leg < LEGS_OF_ucu ? ucu_platform_point_y : 0;
-        b_c_ucu_in_platform_z += leg < LEGS_OF_ucu ? ucu_platform_point_z : 0;
+        KEEP_OF_LEG(ucu_potential_t, ucu_base_frame_xx*ucu_base_point_x +
+            ucu_base_frame_yx*ucu_base_point_y + ucu_base_frame_zx*ucu_base_point_z);
+        KEEP_OF_LEG(ucu_potential_t_2, ucu_base_frame_xy*ucu_base_point_x +
+            ucu_base_frame_yy*ucu_base_point_y + ucu_base_frame_zy*ucu_base_point_z);
+        KEEP_OF_LEG(ucu_potential_t_3, ucu_base_frame_xz*ucu_base_point_x +
+            ucu_base_frame_yz*ucu_base_point_y + ucu_base_frame_zz*ucu_base_point_z);
+        if (leg < LEGS_OF_ucu) {
+            m_star_of_legs += ucu_link4_mass;
+            h_star_in_platform_x_of_legs += ucu_h_star_t;
+            h_star_in_platform_y_of_legs += ucu_h_star_t_2;
+            h_star_in_platform_z_of_legs += ucu_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -ucu_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -ucu_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -ucu_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -ucu_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -ucu_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -ucu_J_star_t_10;
+            b_c_ucu_in_platform_x += ucu_platform_point_x;
+            b_c_ucu_in_platform_y += ucu_platform_point_y;
+            b_c_ucu_in_platform_z += ucu_platform_point_z;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_ucu_in_platform_x;
-    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_ucu_in_platform_y;
-    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_ucu_in_platform_z;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.16666666666666666)*b_c_ucu_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.16666666666666666)*b_c_ucu_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.16666666666666666)*b_c_ucu_in_platform_z);
     return OK;
 }
 
@@ -1552,14 +1490,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1598,7 +1536,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1728,7 +1666,7 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x;
     /* (ucu-q_4) displacement of joint 4 */
     v->ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5;
-    /* (ucu-h_4) first moment of link 4 about the connection point */
+    /* (ucu-h_4) */
     v->ucu_h_4_in_axes1_y = v->ucu_c_4*m->ucu_h_4_in_spec4_y[i] +
         v->ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i];
     v->ucu_h_4_in_spec2_z = v->ucu_c_4*m->ucu_h_4_in_spec4_z[i] -
@@ -1786,7 +1724,7 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_ucu_axes4_y*m->gravity_y + v->axis_y_ucu_axes4_z*m->gravity_z;
     v->ucu_g_in_axes4_z = v->axis_z_ucu_axes4_x*m->gravity_x +
         v->axis_z_ucu_axes4_y*m->gravity_y + v->axis_z_ucu_axes4_z*m->gravity_z;
-    /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ucu-mu_2) */
     const real ucu_mu_2_t_7 = v->ucu_c_1*m->ucu_mu_2_t[i] + m->ucu_mu_2_t_2[i]*v->ucu_s_1;
     v->ucu_g_in_axes2_z = v->ucu_c_1*m->ucu_mu_2_t_2[i] - m->ucu_mu_2_t[i]*v->ucu_s_1;
     v->ucu_g_in_axes2_x = v->ucu_c_2*ucu_mu_2_t_7 + v->ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i];
@@ -1878,7 +1816,7 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ucu_bias_in_axes4_y =
         v->ucu_root_2*(v->ucu_omega_1_in_axes2_x*v->ucu_omega_2_in_axes4_y + v->ucu_zeta_2_t)
         - ucu_bias_t*v->ucu_omega_2_in_axes4_x;
-    /* (ucu-nd_m1) rate of moment direction 1 */
+    /* (ucu-nd_m1) */
     const real ucu_omega_in_axes4_y = v->axis_y_ucu_axes4_x*omega_x +
         v->axis_y_ucu_axes4_y*omega_y + v->axis_y_ucu_axes4_z*omega_z;
     v->ucu_nd_m1_t = v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
@@ -1895,7 +1833,7 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ucu_phi_4_t = v->ucu_W_2_t_3*m->ucu_h_4_in_spec4_x[i];
     /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
     v->ucu_mu_4_t = m->ucu_J_4_in_spec4_yz[i]*(v->ucu_W_2_t - v->ucu_W_2_t_2);
-    /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ucu-mu_2) */
     const real ucu_mu_2_t_4 = v->ucu_omega_1_in_axes2_x*v->ucu_omega_1_in_axes2_x;
     const real ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
     const real ucu_mu_2_t_6 = v->ucu_qd_2*v->ucu_qd_2;
@@ -1954,7 +1892,7 @@ INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
     const real ucu_rel_in_axes4_x = v->ucu_S_ddot_in_axes4_x - v->ucu_bias_in_axes4_x;
     const real ucu_rel_in_axes4_y = v->ucu_S_ddot_in_axes4_y - v->ucu_bias_in_axes4_y;
-    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    /* (ucu-etad_1) */
     const real ucu_etad_1 = v->ucu_etad_1_t + v->ucu_nu_1_2;
     /* (ucu-qdd_1) acceleration of joint 1 */
     v->ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_c_4*ucu_rel_in_axes4_x +
@@ -1969,10 +1907,10 @@ INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
 
 INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
 {
-    /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+    /* (ucu-J_4) */
     const real ucu_J_4_in_axes2_xz = m->ucu_J_4_in_spec4_xy[i]*v->ucu_c_4 +
         m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_2_in_axes4_y;
-    /* (ucu-w_1) force part of reciprocal wrench 1 */
+    /* (ucu-w_1) */
     const real ucu_w_1_in_axes4_x = v->inv_ucu_v_1_in_axes2_z*v->ucu_c_4;
     const real ucu_w_1_in_axes4_y = v->inv_ucu_v_1_in_axes2_z*v->ucu_e_2_in_axes4_y;
     /* (ucu-w_2) force part of reciprocal wrench 2 */
@@ -1981,7 +1919,7 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         v->ucu_c_4*ucu_w_2_t;
     const real ucu_w_2_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_w_2_t -
         v->inv_ucu_root_2*v->ucu_c_4;
-    /* (ucu-w_4) force part of reciprocal wrench 4 */
+    /* (ucu-w_4) */
     const real ucu_w_4_t_2 =
         v->inv_ucu_end_p1_in_axes4_x*v->inv_ucu_root_2*v->ucu_n_m1_in_axes2_z;
     const real ucu_w_4_t_3 =
@@ -2000,8 +1938,7 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
     const real ucu_D_1_4 = m->ucu_J_4_in_spec4_xx[i]*v->ucu_e_1_in_axes4_z +
         m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_1_in_axes4_y -
         m->ucu_J_4_in_spec4_xy[i]*v->ucu_v_1_t;
-    /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
+    /* (ucu-Jc_2) */
     const real ucu_Jc_2_t = m->ucu_J_4_in_spec4_yz[i]*v->ucu_e_2_in_axes4_y;
     const real ucu_Jc_2_t_2 = m->ucu_J_4_in_spec4_yz[i]*v->ucu_c_4;
     const real ucu_Jc_2_t_3 = m->ucu_J_4_in_spec4_yy[i]*v->ucu_e_2_in_axes4_y - ucu_Jc_2_t_2;
@@ -2218,10 +2155,10 @@ INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real omega_z = V[5*w + j];
     const real ucu_eta_1 = omega_x*v->ucu_n_m1_x + omega_y*v->ucu_n_m1_y +
         omega_z*v->ucu_n_m1_z;
-    /* (ucu-qd_4) rate of joint 4 */
+    /* (ucu-qd_4) */
     const real ucu_qd_4 = -v->inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + v->ucu_qd_4_t -
         v->ucu_qd_4_t_2);
-    /* (ucu-omega_4) angular velocity of link 4 */
+    /* (ucu-omega_4) */
     const real ucu_omega_4_in_axes4_z = v->ucu_omega_1_in_axes2_x + ucu_qd_4;
     /* (ucu-W_4) centripetal tensor of link 4 */
     const real ucu_W_4_in_axes4_xz = v->ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
@@ -2234,18 +2171,18 @@ INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_x_ucu_axes4_y*ucu_u_1_y + v->axis_x_ucu_axes4_z*ucu_u_1_z;
     const real ucu_u_1_in_axes4_y = v->axis_y_ucu_axes4_x*ucu_u_1_x +
         v->axis_y_ucu_axes4_y*ucu_u_1_y + v->axis_y_ucu_axes4_z*ucu_u_1_z;
-    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    /* (ucu-zeta_4) */
     const real ucu_zeta_4_in_axes4_x = v->ucu_omega_2_in_axes4_y*ucu_qd_4;
-    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    /* (ucu-beta_4) */
     const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v->ucu_zeta_2_t;
     /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - v->ucu_bias_in_axes4_x;
     const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - v->ucu_bias_in_axes4_y;
-    /* (ucu-nd_m1) rate of moment direction 1 */
+    /* (ucu-nd_m1) */
     const real ucu_nd_m1_in_axes4_z = -v->ucu_nd_m1_t -
         v->ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
-    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+    /* (ucu-nu_1) */
     const real ucu_nu_1_t_3 = v->ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x*v->ucu_n_m1_in_axes4_x;
     const real ucu_nu_1_t_6 = v->ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
         v->ucu_omega_in_axes4_z) + v->ucu_nu_1_t_4*(v->ucu_nu_1_t +
@@ -2380,7 +2317,7 @@ INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
 
 INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
 {
-    /* (ucu-W_4) centripetal tensor of link 4 */
+    /* (ucu-W_4) */
     const real ucu_W_4_in_axes4_xz_2 = v->ucu_omega_2_in_axes4_x*v->ucu_omega_4_in_axes4_z_2;
     const real ucu_W_4_in_axes4_yz_2 = v->ucu_omega_2_in_axes4_y*v->ucu_omega_4_in_axes4_z_2;
     /* (ucu-alpha_1) angular acceleration of link 1 */
@@ -2407,14 +2344,14 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
     const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz_2 - ucu_alpha_4_in_axes4_x;
     const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz_2 - ucu_alpha_4_in_axes4_y;
     const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz_2 + ucu_alpha_4_in_axes4_x;
-    /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
+    /* (ucu-acc_4) */
     v->ucu_acc_4_in_axes4_x = v->ucu_S_ddot_in_axes4_x - v->ucu_g_in_axes4_x;
     v->ucu_acc_4_in_axes4_y = v->ucu_S_ddot_in_axes4_y - v->ucu_g_in_axes4_y;
     v->ucu_acc_4_in_axes4_z = v->ucu_S_ddot_in_axes4_z - v->ucu_g_in_axes4_z;
-    /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
+    /* (ucu-phi_4) */
     v->ucu_phi_4_in_axes4_z = ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] - v->ucu_phi_4_t +
         ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
-    /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+    /* (ucu-mu_4) */
     const real ucu_mu_4_t_2 = v->ucu_omega_4_in_axes4_z_2*v->ucu_omega_4_in_axes4_z_2;
     const real ucu_mu_4_in_axes4_x = v->ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
         v->ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
@@ -2436,7 +2373,7 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
         ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i] +
         ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
         ucu_B_4_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i];
-    /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ucu-mu_2) */
     const real ucu_mu_2_in_axes2_x = v->ucu_mu_2_t_11 - v->ucu_mu_2_t_8 +
         m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_x +
         ucu_B_2_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
@@ -2532,7 +2469,7 @@ INLINE void any_sums_ucu(size_t k, size_t count, int add, const values_ucu *v, r
     gather(&terms[3*count + k], add, v->ucu_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->ucu_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->ucu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->ucu_M_ta_t_10);  /* M_ta_xx */
     gather(&terms[7*count + k], add, v->ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v->ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
@@ -2542,7 +2479,7 @@ INLINE void any_sums_ucu(size_t k, size_t count, int add, const values_ucu *v, r
     gather(&terms[12*count + k], add, v->ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
     gather(&terms[14*count + k], add, v->ucu_M_ta_t_18);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[15*count + k], add, v->ucu_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[16*count + k], add, v->ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[17*count + k], add, v->ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2557,7 +2494,7 @@ INLINE void any_sums_ucu_2(size_t k, size_t count, int add, const values_ucu *v,
     gather(&terms[0*count + k], add, v->ucu_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->ucu_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->ucu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->ucu_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->ucu_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->ucu_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2569,7 +2506,7 @@ INLINE void any_entries_ucu(size_t k, size_t count, const values_ucu *v, real *o
     o[0*count + k] = v->axis_z_ucu_axes4_x;
     o[1*count + k] = v->axis_z_ucu_axes4_y;
     o[2*count + k] = v->axis_z_ucu_axes4_z;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+    /* (ucu-H_a_3) */
     o[3*count + k] = v->ucu_H_a_3_x;
     o[4*count + k] = v->ucu_H_a_3_y;
     o[5*count + k] = v->ucu_H_a_3_z;
@@ -2582,6 +2519,136 @@ INLINE void any_singular_ucu(size_t k, const values_ucu *v, real *o)
         UNLESS(magnitude(v->ucu_end_p1_in_axes4_x) > LEAST_3) +
         UNLESS(magnitude(v->ucu_root_2) > LEAST_4) + UNLESS(magnitude(v->ucu_v_1_in_axes2_z) >
         LEAST_4);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_ucu_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2666,125 +2733,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 21*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
@@ -2853,97 +2803,7 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
@@ -2968,7 +2828,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -3020,35 +2880,7 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -3074,7 +2906,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -3231,19 +3063,18 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ucu_V_X(m, w, i, j, V, &v);
     stage_ucu_A_V_X(w, j, s, A, &v);
     stage_ucu_legs_required(m, i, &v);
-    /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ucu-c) */
     const real ucu_c_x = v.axis_x_ucu_axes4_x*v.ucu_c_in_axes4_x -
         v.axis_z_ucu_axes4_x*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_x*v.ucu_c_in_axes4_y;
     const real ucu_c_y = v.axis_x_ucu_axes4_y*v.ucu_c_in_axes4_x -
         v.axis_z_ucu_axes4_y*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_y*v.ucu_c_in_axes4_y;
     const real ucu_c_z = v.axis_x_ucu_axes4_z*v.ucu_c_in_axes4_x -
         v.axis_z_ucu_axes4_z*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_z*v.ucu_c_in_axes4_y;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real ucu_R_a_t = ucu_c_y*v.ucu_q_z - v.ucu_c_m_x - ucu_c_z*v.ucu_q_y;
     const real ucu_R_a_t_2 = ucu_c_z*v.ucu_q_x - v.ucu_c_m_y - ucu_c_x*v.ucu_q_z;
     const real ucu_R_a_t_3 = ucu_c_x*v.ucu_q_y - v.ucu_c_m_z - ucu_c_y*v.ucu_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ucu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ucu_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, ucu_c_z);  /* R_t_z_of_legs */
@@ -3269,7 +3100,7 @@ INLINE void required_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3279,7 +3110,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3326,8 +3157,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ucu[7*LANES];
@@ -3362,9 +3193,9 @@ INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t i, s
     stage_ucu_X(m, w, i, j, s, X, &v);
     /* (ucu-q_1) displacement of joint 1 */
     const real ucu_q_1 = angle(v.ucu_s_1, v.ucu_c_1);
-    /* (ucu-q_2) displacement of joint 2 */
+    /* (ucu-q_2) */
     const real ucu_q_2 = angle(-v.ucu_e_1_in_axes4_z, v.ucu_c_2);
-    /* (ucu-q_4) displacement of joint 4 */
+    /* (ucu-q_4) */
     const real ucu_q_4 = angle(-v.ucu_e_2_in_axes4_y, v.ucu_c_4);
     /* (ucu-q_1) */
     o[0*count + k] = ucu_q_1;
@@ -3437,13 +3268,13 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t i, size_t j
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
-    /* (ucu-qd_1) rate of joint 1 */
+    /* (ucu-qd_1) */
     o[0*count + k] = v.ucu_qd_1;
-    /* (ucu-qd_2) rate of joint 2 */
+    /* (ucu-qd_2) */
     o[1*count + k] = v.ucu_qd_2;
     /* (ucu-qd_3) rate of joint 3 */
     o[2*count + k] = v.ucu_S_dot_in_axes2_x;
-    /* (ucu-qd_4) rate of joint 4 */
+    /* (ucu-qd_4) */
     o[3*count + k] = v.ucu_qd_4_2;
     any_singular_ucu(k, &v, o + 4*count);
     o[5*count + k] = (v.ucu_qd_1 + v.ucu_qd_2) + (v.ucu_S_dot_in_axes2_x + v.ucu_qd_4_2);
@@ -3509,15 +3340,15 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, 
     stage_ucu_A_X(w, j, A, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
     stage_ucu_A_V_X(w, j, s, A, &v);
-    /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+    /* (ucu-rel) */
     const real ucu_rel_in_axes4_z = v.ucu_S_ddot_in_axes4_z + v.ucu_W_2_t_3*v.ucu_root_2;
-    /* (ucu-qdd_1) acceleration of joint 1 */
+    /* (ucu-qdd_1) */
     o[0*count + k] = v.ucu_qdd_1;
-    /* (ucu-qdd_2) acceleration of joint 2 */
+    /* (ucu-qdd_2) */
     o[1*count + k] = v.ucu_qdd_2;
     /* (ucu-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ucu_rel_in_axes4_z;
-    /* (ucu-qdd_4) acceleration of joint 4 */
+    /* (ucu-qdd_4) */
     o[3*count + k] = -v.ucu_qdd_4_t;
     any_singular_ucu(k, &v, o + 4*count);
     o[5*count + k] = (v.ucu_qdd_1 + v.ucu_qdd_2) + (ucu_rel_in_axes4_z + v.ucu_qdd_4_t);
@@ -3604,11 +3435,11 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = ucu_c_true_x;
     o[1*count + k] = ucu_c_true_y;
     o[2*count + k] = ucu_c_true_z;
-    /* (ucu-c_m) moment of the leg on the platform without actuation */
+    /* (ucu-c_m) */
     o[3*count + k] = v.ucu_c_m_x;
     o[4*count + k] = v.ucu_c_m_y;
     o[5*count + k] = v.ucu_c_m_z;
-    /* (ucu-w_3) force part of reciprocal wrench 3 */
+    /* (ucu-w_3) */
     o[6*count + k] = v.axis_z_ucu_axes4_x;
     o[7*count + k] = v.axis_z_ucu_axes4_y;
     o[8*count + k] = v.axis_z_ucu_axes4_z;
@@ -3655,7 +3486,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3739,7 +3570,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3795,7 +3626,7 @@ INLINE void condition_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_ucu = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_ucu);
     /* (spread) */
@@ -4641,13 +4472,12 @@ int hexapod_6ucu_rotation(const real *X, real *R_out)
 
 int hexapod_6ucu_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
@@ -4666,13 +4496,12 @@ int hexapod_6ucu_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int hexapod_6ucu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 

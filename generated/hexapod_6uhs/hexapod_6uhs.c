@@ -53,10 +53,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6UHS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6UHS_LANES >= 4 && VECTORS_OF(HEXAPOD_6UHS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +72,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +283,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +298,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +404,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -656,8 +666,9 @@ static int acceptable(const hexapod_6uhs_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model)
 {
@@ -679,9 +690,9 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     real b_c_uhs_in_platform_y = 0;
     real b_c_uhs_in_platform_z = 0;
     real legs_size_uhs = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -708,32 +719,28 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.16666666666666666)*root(6);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.16666666666666666)*root(6));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_uhs); ++leg) {
         const size_t own = leg < LEGS_OF_uhs ? leg : 0;
-        const real uhs_base_point_x = params->uhs_base_point[own][0];
-        const real uhs_base_point_y = params->uhs_base_point[own][1];
-        const real uhs_base_point_z = params->uhs_base_point[own][2];
-        const real uhs_base_frame_xx = params->uhs_base_frame[own][0][0];
-        const real uhs_base_frame_xy = params->uhs_base_frame[own][0][1];
-        const real uhs_base_frame_xz = params->uhs_base_frame[own][0][2];
-        const real uhs_base_frame_yx = params->uhs_base_frame[own][1][0];
-        const real uhs_base_frame_yy = params->uhs_base_frame[own][1][1];
-        const real uhs_base_frame_yz = params->uhs_base_frame[own][1][2];
-        const real uhs_base_frame_zx = params->uhs_base_frame[own][2][0];
-        const real uhs_base_frame_zy = params->uhs_base_frame[own][2][1];
-        const real uhs_base_frame_zz = params->uhs_base_frame[own][2][2];
-        const real uhs_platform_point_x = params->uhs_platform_point[own][0];
-        const real uhs_platform_point_y = params->uhs_platform_point[own][1];
-        const real uhs_platform_point_z = params->uhs_platform_point[own][2];
+        KEEP_OF_LEG(uhs_base_point_x, params->uhs_base_point[own][0]);
+        KEEP_OF_LEG(uhs_base_point_y, params->uhs_base_point[own][1]);
+        KEEP_OF_LEG(uhs_base_point_z, params->uhs_base_point[own][2]);
+        KEEP_OF_LEG(uhs_base_frame_xx, params->uhs_base_frame[own][0][0]);
+        KEEP_OF_LEG(uhs_base_frame_xy, params->uhs_base_frame[own][0][1]);
+        KEEP_OF_LEG(uhs_base_frame_xz, params->uhs_base_frame[own][0][2]);
+        KEEP_OF_LEG(uhs_base_frame_yx, params->uhs_base_frame[own][1][0]);
+        KEEP_OF_LEG(uhs_base_frame_yy, params->uhs_base_frame[own][1][1]);
+        KEEP_OF_LEG(uhs_base_frame_yz, params->uhs_base_frame[own][1][2]);
+        KEEP_OF_LEG(uhs_base_frame_zx, params->uhs_base_frame[own][2][0]);
+        KEEP_OF_LEG(uhs_base_frame_zy, params->uhs_base_frame[own][2][1]);
+        KEEP_OF_LEG(uhs_base_frame_zz, params->uhs_base_frame[own][2][2]);
+        KEEP_OF_LEG(uhs_platform_point_x, params->uhs_platform_point[own][0]);
+        KEEP_OF_LEG(uhs_platform_point_y, params->uhs_platform_point[own][1]);
+        KEEP_OF_LEG(uhs_platform_point_z, params->uhs_platform_point[own][2]);
         const real uhs_joint3_pitch = params->uhs_joint3_pitch[own];
-        const real uhs_joint3_offset_x = params->uhs_joint3_offset[own][0];
-        const real uhs_platform_joint_offset_x = params->uhs_platform_joint_offset[own][0];
-        const real uhs_link2_mass = params->uhs_link2_mass[own];
+        KEEP_OF_LEG(uhs_joint3_offset_x, params->uhs_joint3_offset[own][0]);
+        KEEP_OF_LEG(uhs_platform_joint_offset_x, params->uhs_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(uhs_link2_mass, params->uhs_link2_mass[own]);
         const real uhs_link2_centre_of_mass_x = params->uhs_link2_centre_of_mass[own][0];
         const real uhs_link2_centre_of_mass_y = params->uhs_link2_centre_of_mass[own][1];
         const real uhs_link2_centre_of_mass_z = params->uhs_link2_centre_of_mass[own][2];
@@ -743,7 +750,7 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_link2_inertia_yy = params->uhs_link2_inertia[own][1][1];
         const real uhs_link2_inertia_yz = params->uhs_link2_inertia[own][1][2];
         const real uhs_link2_inertia_zz = params->uhs_link2_inertia[own][2][2];
-        const real uhs_link3_mass = params->uhs_link3_mass[own];
+        KEEP_OF_LEG(uhs_link3_mass, params->uhs_link3_mass[own]);
         const real uhs_link3_centre_of_mass_x = params->uhs_link3_centre_of_mass[own][0];
         const real uhs_link3_centre_of_mass_y = params->uhs_link3_centre_of_mass[own][1];
         const real uhs_link3_centre_of_mass_z = params->uhs_link3_centre_of_mass[own][2];
@@ -754,17 +761,17 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_link3_inertia_yz = params->uhs_link3_inertia[own][1][2];
         const real uhs_link3_inertia_zz = params->uhs_link3_inertia[own][2][2];
         static const signed char signs_uhs_branch_1[] = {1, 1, 1, 1, 1, 1};
-        const real uhs_branch_1 = signs_uhs_branch_1[own];
+        KEEP_OF_LEG(uhs_branch_1, signs_uhs_branch_1[own]);
         static const signed char signs_uhs_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real uhs_branch_2 = signs_uhs_branch_2[own];
+        KEEP_OF_LEG(uhs_branch_2, signs_uhs_branch_2[own]);
         /* (uhs-size) length of the leg's lever arms, the measure of what is near singular */
-        const real uhs_size_t = R(0.6400000000000001) + uhs_joint3_offset_x*uhs_joint3_offset_x +
-            uhs_joint3_pitch*uhs_joint3_pitch;
-        const real uhs_size = root(uhs_size_t);
+        KEEP_OF_LEG(uhs_size_t, R(0.6400000000000001) + uhs_joint3_offset_x*uhs_joint3_offset_x +
+            uhs_joint3_pitch*uhs_joint3_pitch);
+        KEEP_OF_LEG(uhs_size, root(uhs_size_t));
         /* (uhs-h_2) first moment of link 2 about the origin of link 2 */
-        const real uhs_h_2_in_spec2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass;
-        const real uhs_h_2_in_spec2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass;
-        const real uhs_h_2_in_spec2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass;
+        KEEP_OF_LEG(uhs_h_2_in_spec2_x, uhs_link2_centre_of_mass_x*uhs_link2_mass);
+        KEEP_OF_LEG(uhs_h_2_in_spec2_y, uhs_link2_centre_of_mass_y*uhs_link2_mass);
+        KEEP_OF_LEG(uhs_h_2_in_spec2_z, uhs_link2_centre_of_mass_z*uhs_link2_mass);
         /* (uhs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real uhs_J_2_t = uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_x;
         const real uhs_J_2_t_2 = uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_y;
@@ -772,80 +779,80 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_J_2_t_4 = uhs_J_2_t + uhs_J_2_t_2 + uhs_J_2_t_3;
         const real uhs_J_2_in_spec2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(uhs_J_2_t -
             uhs_J_2_t_4);
-        const real uhs_J_2_in_spec2_xy = uhs_link2_inertia_xy -
-            uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_y*uhs_link2_mass;
-        const real uhs_J_2_in_spec2_xz = uhs_link2_inertia_xz -
-            uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_z*uhs_link2_mass;
-        const real uhs_J_2_in_spec2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 -
-            uhs_J_2_t_4);
-        const real uhs_J_2_in_spec2_yz = uhs_link2_inertia_yz -
-            uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_z*uhs_link2_mass;
-        const real uhs_J_2_in_spec2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 -
-            uhs_J_2_t_4);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_xy, uhs_link2_inertia_xy -
+            uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_y*uhs_link2_mass);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_xz, uhs_link2_inertia_xz -
+            uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_z*uhs_link2_mass);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_yy, uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 -
+            uhs_J_2_t_4));
+        KEEP_OF_LEG(uhs_J_2_in_spec2_yz, uhs_link2_inertia_yz -
+            uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_z*uhs_link2_mass);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_zz, uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 -
+            uhs_J_2_t_4));
         /* (uhs-rho_tip_3) connection point to the centre of mass of link 3 */
         const real uhs_rho_tip_3_in_spec3_x = uhs_link3_centre_of_mass_x -
             uhs_platform_joint_offset_x;
         /* (uhs-h_3) first moment of link 3 about the connection point */
-        const real uhs_h_3_in_spec3_x = uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
-        const real uhs_h_3_in_spec3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass;
-        const real uhs_h_3_in_spec3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass;
+        KEEP_OF_LEG(uhs_h_3_in_spec3_x, uhs_link3_mass*uhs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(uhs_h_3_in_spec3_y, uhs_link3_centre_of_mass_y*uhs_link3_mass);
+        KEEP_OF_LEG(uhs_h_3_in_spec3_z, uhs_link3_centre_of_mass_z*uhs_link3_mass);
         /* (uhs-J_3) inertia tensor of link 3 about the connection point */
         const real uhs_J_3_t = uhs_rho_tip_3_in_spec3_x*uhs_rho_tip_3_in_spec3_x;
         const real uhs_J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y;
         const real uhs_J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z;
         const real uhs_J_3_t_4 = uhs_J_3_t + uhs_J_3_t_2 + uhs_J_3_t_3;
-        const real uhs_J_3_in_spec3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t -
-            uhs_J_3_t_4);
-        const real uhs_J_3_in_spec3_xy = uhs_link3_inertia_xy -
-            uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
-        const real uhs_J_3_in_spec3_xz = uhs_link3_inertia_xz -
-            uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
-        const real uhs_J_3_in_spec3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 -
-            uhs_J_3_t_4);
-        const real uhs_J_3_in_spec3_yz = uhs_link3_inertia_yz -
-            uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass;
-        const real uhs_J_3_in_spec3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 -
-            uhs_J_3_t_4);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_xx, uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t -
+            uhs_J_3_t_4));
+        KEEP_OF_LEG(uhs_J_3_in_spec3_xy, uhs_link3_inertia_xy -
+            uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_xz, uhs_link3_inertia_xz -
+            uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_yy, uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 -
+            uhs_J_3_t_4));
+        KEEP_OF_LEG(uhs_J_3_in_spec3_yz, uhs_link3_inertia_yz -
+            uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_zz, uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 -
+            uhs_J_3_t_4));
         /* (uhs-q_3) displacement of joint 3 */
-        const real inv_uhs_joint3_pitch = 1/uhs_joint3_pitch;
+        KEEP_OF_LEG(inv_uhs_joint3_pitch, 1/uhs_joint3_pitch);
         /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-        const real uhs_bias_t = 2*uhs_joint3_pitch;
+        KEEP_OF_LEG(uhs_bias_t, 2*uhs_joint3_pitch);
         /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real uhs_acc_3_t = gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx +
-            gravity_z*uhs_base_frame_zx;
-        const real uhs_acc_3_t_2 = gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy +
-            gravity_z*uhs_base_frame_zy;
-        const real uhs_acc_3_t_3 = gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz +
-            gravity_z*uhs_base_frame_zz;
+        KEEP_OF_LEG(uhs_acc_3_t, gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx +
+            gravity_z*uhs_base_frame_zx);
+        KEEP_OF_LEG(uhs_acc_3_t_2, gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy +
+            gravity_z*uhs_base_frame_zy);
+        KEEP_OF_LEG(uhs_acc_3_t_3, gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz +
+            gravity_z*uhs_base_frame_zz);
         /* (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_z;
-        const real uhs_d_phi_3_in_axes3_yz = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_y;
+        KEEP_OF_LEG(uhs_d_phi_3_t, inv_uhs_joint3_pitch*uhs_h_3_in_spec3_z);
+        KEEP_OF_LEG(uhs_d_phi_3_in_axes3_yz, inv_uhs_joint3_pitch*uhs_h_3_in_spec3_y);
         /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real uhs_Jc_2_in_axes2_xx = uhs_J_2_in_spec2_xx + uhs_J_3_in_spec3_xx;
+        KEEP_OF_LEG(uhs_Jc_2_in_axes2_xx, uhs_J_2_in_spec2_xx + uhs_J_3_in_spec3_xx);
         /* (uhs-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real uhs_Sigma_3_t = uhs_J_3_in_spec3_xx + uhs_J_3_in_spec3_yy +
             uhs_J_3_in_spec3_zz;
         const real uhs_Sigma_3_t_2 = R(0.5)*uhs_Sigma_3_t;
-        const real uhs_Sigma_3_in_axes3_xx = uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_yy;
-        const real uhs_Sigma_3_in_axes3_yy = uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_zz;
-        const real uhs_Sigma_3_in_axes3_zz = uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_xx;
+        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_zz);
+        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_zz, uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_xx);
         /* (uhs-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real uhs_Sigma_2_t = uhs_J_2_in_spec2_xx + uhs_J_2_in_spec2_yy +
             uhs_J_2_in_spec2_zz;
         const real uhs_Sigma_2_t_2 = R(0.5)*uhs_Sigma_2_t;
-        const real uhs_Sigma_2_in_axes2_xx = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_xx;
-        const real uhs_Sigma_2_in_axes2_yy = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_zz;
-        const real uhs_Sigma_2_in_axes2_zz = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_yy;
+        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_zz);
+        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_zz, uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_yy);
         /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_uhs_size_t = 1/uhs_size_t;
-        const real inv_uhs_size = 1/uhs_size;
+        KEEP_OF_LEG(inv_uhs_size_t, 1/uhs_size_t);
+        KEEP_OF_LEG(inv_uhs_size, 1/uhs_size);
         /* (uhs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all degrees of freedom */
-        const real uhs_d_G_in_axes3_zz =
-            inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_in_spec3_xx;
+        KEEP_OF_LEG(uhs_d_G_in_axes3_zz,
+            inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_in_spec3_xx);
         /* (h_star) */
         const real uhs_h_star_t = uhs_link3_mass*uhs_platform_point_x;
         const real uhs_h_star_t_2 = uhs_link3_mass*uhs_platform_point_y;
@@ -862,142 +869,63 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_J_star_t_9 = uhs_link3_mass*uhs_platform_point_y*uhs_platform_point_z;
         const real uhs_J_star_t_10 = uhs_link3_mass*(uhs_J_star_t_3 - uhs_J_star_t_4);
         /* (potential) potential energy */
-        const real uhs_potential_t = uhs_base_frame_xx*uhs_base_point_x +
-            uhs_base_frame_yx*uhs_base_point_y + uhs_base_frame_zx*uhs_base_point_z;
-        const real uhs_potential_t_2 = uhs_base_frame_xy*uhs_base_point_x +
-            uhs_base_frame_yy*uhs_base_point_y + uhs_base_frame_zy*uhs_base_point_z;
-        const real uhs_potential_t_3 = uhs_base_frame_xz*uhs_base_point_x +
-            uhs_base_frame_yz*uhs_base_point_y + uhs_base_frame_zz*uhs_base_point_z;
-        KEEP_OF_LEG(inv_uhs_joint3_pitch);
-        KEEP_OF_LEG(inv_uhs_size);
-        KEEP_OF_LEG(inv_uhs_size_t);
-        KEEP_OF_LEG(uhs_J_2_in_spec2_xy);
-        KEEP_OF_LEG(uhs_J_2_in_spec2_xz);
-        KEEP_OF_LEG(uhs_J_2_in_spec2_yy);
-        KEEP_OF_LEG(uhs_J_2_in_spec2_yz);
-        KEEP_OF_LEG(uhs_J_2_in_spec2_zz);
-        KEEP_OF_LEG(uhs_J_3_in_spec3_xx);
-        KEEP_OF_LEG(uhs_J_3_in_spec3_xy);
-        KEEP_OF_LEG(uhs_J_3_in_spec3_xz);
-        KEEP_OF_LEG(uhs_J_3_in_spec3_yy);
-        KEEP_OF_LEG(uhs_J_3_in_spec3_yz);
-        KEEP_OF_LEG(uhs_J_3_in_spec3_zz);
-        KEEP_OF_LEG(uhs_Jc_2_in_axes2_xx);
-        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(uhs_acc_3_t);
-        KEEP_OF_LEG(uhs_acc_3_t_2);
-        KEEP_OF_LEG(uhs_acc_3_t_3);
-        KEEP_OF_LEG(uhs_base_frame_xx);
-        KEEP_OF_LEG(uhs_base_frame_xy);
-        KEEP_OF_LEG(uhs_base_frame_xz);
-        KEEP_OF_LEG(uhs_base_frame_yx);
-        KEEP_OF_LEG(uhs_base_frame_yy);
-        KEEP_OF_LEG(uhs_base_frame_yz);
-        KEEP_OF_LEG(uhs_base_frame_zx);
-        KEEP_OF_LEG(uhs_base_frame_zy);
-        KEEP_OF_LEG(uhs_base_frame_zz);
-        KEEP_OF_LEG(uhs_base_point_x);
-        KEEP_OF_LEG(uhs_base_point_y);
-        KEEP_OF_LEG(uhs_base_point_z);
-        KEEP_OF_LEG(uhs_bias_t);
-        KEEP_OF_LEG(uhs_branch_1);
-        KEEP_OF_LEG(uhs_branch_2);
-        KEEP_OF_LEG(uhs_d_G_in_axes3_zz);
-        KEEP_OF_LEG(uhs_d_phi_3_in_axes3_yz);
-        KEEP_OF_LEG(uhs_d_phi_3_t);
-        KEEP_OF_LEG(uhs_h_2_in_spec2_x);
-        KEEP_OF_LEG(uhs_h_2_in_spec2_y);
-        KEEP_OF_LEG(uhs_h_2_in_spec2_z);
-        KEEP_OF_LEG(uhs_h_3_in_spec3_x);
-        KEEP_OF_LEG(uhs_h_3_in_spec3_y);
-        KEEP_OF_LEG(uhs_h_3_in_spec3_z);
-        KEEP_OF_LEG(uhs_joint3_offset_x);
-        KEEP_OF_LEG(uhs_link2_mass);
-        KEEP_OF_LEG(uhs_link3_mass);
-        KEEP_OF_LEG(uhs_platform_joint_offset_x);
-        KEEP_OF_LEG(uhs_platform_point_x);
-        KEEP_OF_LEG(uhs_platform_point_y);
-        KEEP_OF_LEG(uhs_platform_point_z);
-        KEEP_OF_LEG(uhs_potential_t);
-        KEEP_OF_LEG(uhs_potential_t_2);
-        KEEP_OF_LEG(uhs_potential_t_3);
-        KEEP_OF_LEG(uhs_size);
-        KEEP_OF_LEG(uhs_size_t);
-        m_star_of_legs += leg < LEGS_OF_uhs ? uhs_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_uhs ? uhs_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_uhs ? uhs_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_uhs ? uhs_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_uhs ? -uhs_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_uhs ? -uhs_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_uhs ? -uhs_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_uhs ? -uhs_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_uhs ? -uhs_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_uhs ? -uhs_J_star_t_10 : 0;
-        b_c_uhs_in_platform_x += leg < LEGS_OF_uhs ? uhs_platform_point_x : 0;
-        b_c_uhs_in_platform_y += leg < LEGS_OF_uhs ? uhs_platform_point_y : 0;
-        b_c_uhs_in_platform_z += leg < LEGS_OF_uhs ? uhs_platform_point_z : 0;
-        legs_size_uhs += leg < LEGS_OF_uhs ? uhs_size_t : 0;
+        KEEP_OF_LEG(uhs_potential_t, uhs_base_frame_xx*uhs_base_point_x +
+            uhs_base_frame_yx*uhs_base_point_y + uhs_base_frame_zx*uhs_base_point_z);
+        KEEP_OF_LEG(uhs_potential_t_2, uhs_base_frame_xy*uhs_base_point_x +
+            uhs_base_frame_yy*uhs_base_point_y + uhs_base_frame_zy*uhs_base_point_z);
+        KEEP_OF_LEG(uhs_potential_t_3, uhs_base_frame_xz*uhs_base_point_x +
+            uhs_base_frame_yz*uhs_base_point_y + uhs_base_frame_zz*uhs_base_point_z);
+        if (leg < LEGS_OF_uhs) {
+            m_star_of_legs += uhs_link3_mass;
+            h_star_in_platform_x_of_legs += uhs_h_star_t;
+            h_star_in_platform_y_of_legs += uhs_h_star_t_2;
+            h_star_in_platform_z_of_legs += uhs_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -uhs_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -uhs_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -uhs_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -uhs_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -uhs_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -uhs_J_star_t_10;
+            b_c_uhs_in_platform_x += uhs_platform_point_x;
+            b_c_uhs_in_platform_y += uhs_platform_point_y;
+            b_c_uhs_in_platform_z += uhs_platform_point_z;
+            legs_size_uhs += uhs_size_t;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_uhs_in_platform_x;
-    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_uhs_in_platform_y;
-    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_uhs_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.16666666666666666)*b_c_uhs_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.16666666666666666)*b_c_uhs_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.16666666666666666)*b_c_uhs_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_uhs)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_uhs)*spread_t);
     return OK;
 }
 
@@ -1598,14 +1526,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1644,7 +1572,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1739,14 +1667,14 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*v->uhs_root_2;
     /* (uhs-x_3) from the origin of joint 3 to the connection point */
     v->uhs_x_3_in_axes2_x = v->uhs_root_2 - m->uhs_joint3_offset_x[i];
-    /* (uhs-q_3) displacement of joint 3 */
+    /* (uhs-q_3) */
     v->uhs_q_3_t = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
         v->uhs_x_3_in_axes2_x);
     /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
     v->uhs_c_3 = cosine(v->uhs_q_3_t);
     /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
     v->uhs_s_3 = -sine(v->uhs_q_3_t);
-    /* (uhs-h_3) first moment of link 3 about the connection point */
+    /* (uhs-h_3) */
     v->uhs_h_3_in_spec2_z = v->uhs_c_3*m->uhs_h_3_in_spec3_z[i] +
         m->uhs_h_3_in_spec3_y[i]*v->uhs_s_3;
     /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
@@ -1783,7 +1711,7 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_z;
     v->axis_x_uhs_axes3_z = v->axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_y -
         v->axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_x;
-    /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (uhs-acc_3) */
     const real uhs_acc_3_t_4 = m->uhs_acc_3_t[i]*v->uhs_c_1 + m->uhs_acc_3_t_2[i]*v->uhs_s_1;
     v->uhs_g_in_axes2_z = m->uhs_acc_3_t_2[i]*v->uhs_c_1 - m->uhs_acc_3_t[i]*v->uhs_s_1;
     v->uhs_g_in_axes2_x = m->uhs_acc_3_t_3[i]*v->uhs_e_1_in_axes3_z +
@@ -1864,7 +1792,7 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + v->uhs_zeta_3_in_axes3_x;
     const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + v->uhs_zeta_3_in_axes3_y;
-    /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
+    /* (uhs-bias) */
     const real uhs_bias_t_2 = m->uhs_bias_t[i]*v->uhs_qd_3;
     v->uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
         m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
@@ -1881,7 +1809,7 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->uhs_mu_3_t_2 = m->uhs_J_3_in_spec3_xz[i]*(uhs_W_2_t_2 - uhs_mu_3_t);
     v->uhs_mu_3_t_3 = m->uhs_J_3_in_spec3_xy[i]*(uhs_W_2_t - uhs_mu_3_t);
     v->uhs_mu_3_t_4 = m->uhs_J_3_in_spec3_yz[i]*(uhs_W_2_t - uhs_W_2_t_2);
-    /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (uhs-mu_2) */
     const real uhs_mu_2_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
     const real uhs_mu_2_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
     const real uhs_mu_2_t_3 = v->uhs_qd_2*v->uhs_qd_2;
@@ -1948,7 +1876,7 @@ INLINE void stage_uhs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
 INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_uhs *v)
 {
-    /* (uhs-u_1) centripetal acceleration of the connection point */
+    /* (uhs-u_1) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     const real uhs_u_1_x = omega_y*v->uhs_S_dot_t_3 - omega_z*v->uhs_S_dot_t_2;
@@ -2082,13 +2010,13 @@ INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
 
 INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
 {
-    /* (uhs-J_3) inertia tensor of link 3 about the connection point */
+    /* (uhs-J_3) */
     const real uhs_J_3_in_axes2_xz = m->uhs_J_3_in_spec3_xy[i]*v->uhs_c_3 -
         m->uhs_J_3_in_spec3_xz[i]*v->uhs_s_3;
-    /* (uhs-w_1) reciprocal vector 1 */
+    /* (uhs-w_1) */
     const real uhs_w_1_in_axes3_x = v->inv_uhs_v_1_in_axes2_z*v->uhs_c_3;
     const real uhs_w_1_in_axes3_y = -v->inv_uhs_v_1_in_axes2_z*v->uhs_s_3;
-    /* (uhs-w_2) reciprocal vector 2 */
+    /* (uhs-w_2) */
     const real uhs_w_2_t = v->inv_uhs_root_2*v->inv_uhs_v_1_in_axes2_z*v->uhs_v_1_t_2;
     const real uhs_w_2_in_axes3_x = v->uhs_c_3*uhs_w_2_t - v->inv_uhs_root_2*v->uhs_s_3;
     const real uhs_w_2_in_axes3_y = -v->inv_uhs_root_2*v->uhs_c_3 - v->uhs_s_3*uhs_w_2_t;
@@ -2098,8 +2026,7 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
     const real uhs_D_1_3 = m->uhs_J_3_in_spec3_xx[i]*v->uhs_e_1_in_axes3_z +
         m->uhs_J_3_in_spec3_xy[i]*v->uhs_e_1_in_axes3_x +
         m->uhs_J_3_in_spec3_xz[i]*v->uhs_e_1_in_axes3_y;
-    /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
+    /* (uhs-Jc_2) */
     const real uhs_Jc_2_t = m->uhs_J_3_in_spec3_yz[i]*v->uhs_s_3;
     const real uhs_Jc_2_t_2 = m->uhs_J_3_in_spec3_yz[i]*v->uhs_c_3;
     const real uhs_Jc_2_t_3 = m->uhs_J_3_in_spec3_yy[i]*v->uhs_s_3 + uhs_Jc_2_t_2;
@@ -2237,13 +2164,13 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     const real uhs_B_3_in_axes3_yz = v->uhs_W_3_in_axes3_yz - uhs_alpha_3_in_axes3_x;
     const real uhs_B_3_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y;
     const real uhs_B_3_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x;
-    /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (uhs-acc_3) */
     v->uhs_acc_3_in_axes3_x = v->uhs_g_in_axes2_y*v->uhs_s_3 - v->uhs_c_3*v->uhs_g_in_axes2_z
         + v->uhs_S_ddot_in_axes3_x;
     v->uhs_acc_3_in_axes3_y = v->uhs_c_3*v->uhs_g_in_axes2_y + v->uhs_g_in_axes2_z*v->uhs_s_3
         + v->uhs_S_ddot_in_axes3_y;
     v->uhs_acc_3_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_g_in_axes2_x;
-    /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (uhs-mu_3) */
     const real uhs_mu_3_in_axes3_x = v->uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
         v->uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_x[i] + v->uhs_mu_3_t_2 +
         uhs_B_3_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
@@ -2262,7 +2189,7 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         uhs_B_3_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
         uhs_B_3_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
         uhs_B_3_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
-    /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (uhs-mu_2) */
     const real uhs_mu_2_in_axes2_x = v->uhs_mu_2_t_7 - v->uhs_mu_2_t_4 +
         m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_x +
         uhs_B_2_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
@@ -2283,8 +2210,7 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         uhs_mu_3_in_axes3_x*v->uhs_s_3;
     const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z + v->uhs_c_3*uhs_mu_3_in_axes3_x -
         uhs_mu_3_in_axes3_y*v->uhs_s_3;
-    /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (uhs-c) */
     const real uhs_c_t_4 = v->inv_uhs_root_2*uhs_N_2_in_axes2_z;
     const real uhs_c_t_5 = v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*v->uhs_e_1_in_axes3_z
         - uhs_N_2_in_axes2_y*v->uhs_c_2 + uhs_c_t_4*v->uhs_v_1_t_2);
@@ -2346,7 +2272,7 @@ INLINE void any_sums_uhs(size_t k, size_t count, int add, const values_uhs *v, r
     gather(&terms[3*count + k], add, v->uhs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->uhs_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->uhs_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->uhs_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, -v->uhs_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->uhs_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2355,7 +2281,7 @@ INLINE void any_sums_uhs(size_t k, size_t count, int add, const values_uhs *v, r
     gather(&terms[11*count + k], add, v->uhs_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->uhs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->uhs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->uhs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2370,7 +2296,7 @@ INLINE void any_sums_uhs_2(size_t k, size_t count, int add, const values_uhs *v,
     gather(&terms[0*count + k], add, v->uhs_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->uhs_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->uhs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->uhs_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->uhs_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->uhs_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2378,11 +2304,11 @@ INLINE void any_sums_uhs_2(size_t k, size_t count, int add, const values_uhs *v,
 
 INLINE void any_entries_uhs(size_t k, size_t count, const values_uhs *v, real *o)
 {
-    /* (uhs-w_3) reciprocal vector 3 */
+    /* (uhs-w_3) */
     o[0*count + k] = v->uhs_w_3_x;
     o[1*count + k] = v->uhs_w_3_y;
     o[2*count + k] = v->uhs_w_3_z;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+    /* (uhs-H_a_3) */
     o[3*count + k] = v->uhs_H_a_3_x;
     o[4*count + k] = v->uhs_H_a_3_y;
     o[5*count + k] = v->uhs_H_a_3_z;
@@ -2394,6 +2320,136 @@ INLINE void any_singular_uhs(const prepared *m, size_t i, size_t k, const values
         UNLESS(magnitude(v->uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v->uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v->uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_uhs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2478,125 +2534,8 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
@@ -2665,97 +2604,7 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
@@ -2780,7 +2629,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2832,35 +2681,7 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2886,7 +2707,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -3042,8 +2863,7 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_uhs_V_X(m, w, i, j, V, &v);
     stage_uhs_A_V_X(m, w, i, j, s, A, &v);
     stage_uhs_legs_required(m, i, &v);
-    /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (uhs-c) */
     const real uhs_c_t_6 = v.uhs_c_3*v.uhs_c_in_axes3_x - v.uhs_c_in_axes3_y*v.uhs_s_3;
     const real uhs_c_t_7 = v.uhs_c_3*v.uhs_c_in_axes3_y + v.uhs_c_in_axes3_x*v.uhs_s_3;
     const real uhs_c_t_8 = v.uhs_c_2*v.uhs_c_in_axes3_z - uhs_c_t_7*v.uhs_e_1_in_axes3_z;
@@ -3056,11 +2876,11 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
         m->uhs_base_frame_yz[i]*uhs_c_t_9 + m->uhs_base_frame_yy[i]*uhs_c_t_11;
     const real uhs_c_z = m->uhs_base_frame_zx[i]*uhs_c_t_10 -
         m->uhs_base_frame_zz[i]*uhs_c_t_9 + m->uhs_base_frame_zy[i]*uhs_c_t_11;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real uhs_R_a_t = uhs_c_y*v.uhs_q_z - uhs_c_z*v.uhs_q_y;
     const real uhs_R_a_t_2 = uhs_c_z*v.uhs_q_x - uhs_c_x*v.uhs_q_z;
     const real uhs_R_a_t_3 = uhs_c_x*v.uhs_q_y - uhs_c_y*v.uhs_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, uhs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, uhs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, uhs_c_z);  /* R_t_z_of_legs */
@@ -3086,7 +2906,7 @@ INLINE void required_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3096,7 +2916,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3143,8 +2963,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_uhs[7*LANES];
@@ -3179,13 +2999,13 @@ INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t i, s
     stage_uhs_X(m, w, i, j, s, X, &v);
     /* (uhs-q_1) displacement of joint 1 */
     const real uhs_q_1 = angle(v.uhs_s_1, v.uhs_c_1);
-    /* (uhs-q_2) displacement of joint 2 */
+    /* (uhs-q_2) */
     const real uhs_q_2 = angle(-v.uhs_e_1_in_axes3_z, v.uhs_c_2);
     /* (uhs-q_1) */
     o[0*count + k] = uhs_q_1;
     /* (uhs-q_2) */
     o[1*count + k] = uhs_q_2;
-    /* (uhs-q_3) displacement of joint 3 */
+    /* (uhs-q_3) */
     o[2*count + k] = -v.uhs_q_3_t;
     o[3*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
@@ -3248,11 +3068,11 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t i, size_t j
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    /* (uhs-qd_1) rate of joint 1 */
+    /* (uhs-qd_1) */
     o[0*count + k] = v.uhs_qd_1;
-    /* (uhs-qd_2) rate of joint 2 */
+    /* (uhs-qd_2) */
     o[1*count + k] = v.uhs_qd_2;
-    /* (uhs-qd_3) rate of joint 3 */
+    /* (uhs-qd_3) */
     o[2*count + k] = v.uhs_qd_3;
     any_singular_uhs(m, i, k, &v, o + 3*count);
     o[4*count + k] = v.uhs_qd_1 + (v.uhs_qd_2 + v.uhs_qd_3);
@@ -3316,11 +3136,11 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t i, 
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
     stage_uhs_A_V_X(m, w, i, j, s, A, &v);
-    /* (uhs-qdd_1) acceleration of joint 1 */
+    /* (uhs-qdd_1) */
     o[0*count + k] = v.uhs_qdd_1;
-    /* (uhs-qdd_2) acceleration of joint 2 */
+    /* (uhs-qdd_2) */
     o[1*count + k] = v.uhs_qdd_2;
-    /* (uhs-qdd_3) acceleration of joint 3 */
+    /* (uhs-qdd_3) */
     o[2*count + k] = v.uhs_qdd_3;
     any_singular_uhs(m, i, k, &v, o + 3*count);
     o[4*count + k] = v.uhs_qdd_1 + (v.uhs_qdd_2 + v.uhs_qdd_3);
@@ -3412,7 +3232,7 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = uhs_c_true_x;
     o[1*count + k] = uhs_c_true_y;
     o[2*count + k] = uhs_c_true_z;
-    /* (uhs-w_3) reciprocal vector 3 */
+    /* (uhs-w_3) */
     o[3*count + k] = v.uhs_w_3_x;
     o[4*count + k] = v.uhs_w_3_y;
     o[5*count + k] = v.uhs_w_3_z;
@@ -3455,7 +3275,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3539,7 +3359,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3550,8 +3370,7 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (uhs-G) */
     const real uhs_pivot_size = magnitude(v.uhs_rho2_1);
     const real uhs_pivot_size_2 = magnitude(v.uhs_rho2_2);
     const real uhs_pivot_size_3 = magnitude(v.uhs_root_2);
@@ -3592,7 +3411,7 @@ INLINE void condition_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_uhs = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_uhs);
     /* (spread) */
@@ -4438,13 +4257,12 @@ int hexapod_6uhs_rotation(const real *X, real *R_out)
 
 int hexapod_6uhs_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
@@ -4463,13 +4281,12 @@ int hexapod_6uhs_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int hexapod_6uhs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 

@@ -53,10 +53,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6X6R_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6X6R_LANES >= 4 && VECTORS_OF(HEXAPOD_6X6R_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +72,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +283,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +298,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +404,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -786,8 +796,9 @@ static int acceptable(const hexapod_6x6r_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model)
 {
@@ -809,9 +820,9 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     real b_c_six_r_in_platform_y = 0;
     real b_c_six_r_in_platform_z = 0;
     real legs_size_six_r = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -838,42 +849,41 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.16666666666666666)*root(6);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.16666666666666666)*root(6));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_six_r); ++leg) {
         const size_t own = leg < LEGS_OF_six_r ? leg : 0;
-        const real six_r_base_point_x = params->six_r_base_point[own][0];
-        const real six_r_base_point_y = params->six_r_base_point[own][1];
-        const real six_r_base_point_z = params->six_r_base_point[own][2];
-        const real six_r_base_frame_xx = params->six_r_base_frame[own][0][0];
-        const real six_r_base_frame_xy = params->six_r_base_frame[own][0][1];
-        const real six_r_base_frame_xz = params->six_r_base_frame[own][0][2];
-        const real six_r_base_frame_yx = params->six_r_base_frame[own][1][0];
-        const real six_r_base_frame_yy = params->six_r_base_frame[own][1][1];
-        const real six_r_base_frame_yz = params->six_r_base_frame[own][1][2];
-        const real six_r_base_frame_zx = params->six_r_base_frame[own][2][0];
-        const real six_r_base_frame_zy = params->six_r_base_frame[own][2][1];
-        const real six_r_base_frame_zz = params->six_r_base_frame[own][2][2];
-        const real six_r_platform_point_x = params->six_r_platform_point[own][0];
-        const real six_r_platform_point_y = params->six_r_platform_point[own][1];
-        const real six_r_platform_point_z = params->six_r_platform_point[own][2];
-        const real six_r_joint2_offset_x = params->six_r_joint2_offset[own][0];
-        const real six_r_joint3_offset_x = params->six_r_joint3_offset[own][0];
-        const real six_r_joint4_offset_x = params->six_r_joint4_offset[own][0];
-        const real six_r_joint5_offset_x = params->six_r_joint5_offset[own][0];
-        const real six_r_platform_joint_offset_x = params->six_r_platform_joint_offset[own][0];
-        const real six_r_platform_joint_axis_platform_x = params->six_r_platform_joint_axis_platform[own][0];
-        const real six_r_platform_joint_axis_platform_y = params->six_r_platform_joint_axis_platform[own][1];
-        const real six_r_platform_joint_axis_platform_z = params->six_r_platform_joint_axis_platform[own][2];
-        const real six_r_link1_mass = params->six_r_link1_mass[own];
+        KEEP_OF_LEG(six_r_base_point_x, params->six_r_base_point[own][0]);
+        KEEP_OF_LEG(six_r_base_point_y, params->six_r_base_point[own][1]);
+        KEEP_OF_LEG(six_r_base_point_z, params->six_r_base_point[own][2]);
+        KEEP_OF_LEG(six_r_base_frame_xx, params->six_r_base_frame[own][0][0]);
+        KEEP_OF_LEG(six_r_base_frame_xy, params->six_r_base_frame[own][0][1]);
+        KEEP_OF_LEG(six_r_base_frame_xz, params->six_r_base_frame[own][0][2]);
+        KEEP_OF_LEG(six_r_base_frame_yx, params->six_r_base_frame[own][1][0]);
+        KEEP_OF_LEG(six_r_base_frame_yy, params->six_r_base_frame[own][1][1]);
+        KEEP_OF_LEG(six_r_base_frame_yz, params->six_r_base_frame[own][1][2]);
+        KEEP_OF_LEG(six_r_base_frame_zx, params->six_r_base_frame[own][2][0]);
+        KEEP_OF_LEG(six_r_base_frame_zy, params->six_r_base_frame[own][2][1]);
+        KEEP_OF_LEG(six_r_base_frame_zz, params->six_r_base_frame[own][2][2]);
+        KEEP_OF_LEG(six_r_platform_point_x, params->six_r_platform_point[own][0]);
+        KEEP_OF_LEG(six_r_platform_point_y, params->six_r_platform_point[own][1]);
+        KEEP_OF_LEG(six_r_platform_point_z, params->six_r_platform_point[own][2]);
+        KEEP_OF_LEG(six_r_joint2_offset_x, params->six_r_joint2_offset[own][0]);
+        KEEP_OF_LEG(six_r_joint3_offset_x, params->six_r_joint3_offset[own][0]);
+        KEEP_OF_LEG(six_r_joint4_offset_x, params->six_r_joint4_offset[own][0]);
+        KEEP_OF_LEG(six_r_joint5_offset_x, params->six_r_joint5_offset[own][0]);
+        KEEP_OF_LEG(six_r_platform_joint_offset_x, params->six_r_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(six_r_platform_joint_axis_platform_x,
+            params->six_r_platform_joint_axis_platform[own][0]);
+        KEEP_OF_LEG(six_r_platform_joint_axis_platform_y,
+            params->six_r_platform_joint_axis_platform[own][1]);
+        KEEP_OF_LEG(six_r_platform_joint_axis_platform_z,
+            params->six_r_platform_joint_axis_platform[own][2]);
+        KEEP_OF_LEG(six_r_link1_mass, params->six_r_link1_mass[own]);
         const real six_r_link1_centre_of_mass_x = params->six_r_link1_centre_of_mass[own][0];
         const real six_r_link1_centre_of_mass_y = params->six_r_link1_centre_of_mass[own][1];
         const real six_r_link1_centre_of_mass_z = params->six_r_link1_centre_of_mass[own][2];
         const real six_r_link1_inertia_xx = params->six_r_link1_inertia[own][0][0];
-        const real six_r_link2_mass = params->six_r_link2_mass[own];
+        KEEP_OF_LEG(six_r_link2_mass, params->six_r_link2_mass[own]);
         const real six_r_link2_centre_of_mass_x = params->six_r_link2_centre_of_mass[own][0];
         const real six_r_link2_centre_of_mass_y = params->six_r_link2_centre_of_mass[own][1];
         const real six_r_link2_centre_of_mass_z = params->six_r_link2_centre_of_mass[own][2];
@@ -883,7 +893,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real six_r_link2_inertia_yy = params->six_r_link2_inertia[own][1][1];
         const real six_r_link2_inertia_yz = params->six_r_link2_inertia[own][1][2];
         const real six_r_link2_inertia_zz = params->six_r_link2_inertia[own][2][2];
-        const real six_r_link3_mass = params->six_r_link3_mass[own];
+        KEEP_OF_LEG(six_r_link3_mass, params->six_r_link3_mass[own]);
         const real six_r_link3_centre_of_mass_x = params->six_r_link3_centre_of_mass[own][0];
         const real six_r_link3_centre_of_mass_y = params->six_r_link3_centre_of_mass[own][1];
         const real six_r_link3_centre_of_mass_z = params->six_r_link3_centre_of_mass[own][2];
@@ -893,7 +903,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real six_r_link3_inertia_yy = params->six_r_link3_inertia[own][1][1];
         const real six_r_link3_inertia_yz = params->six_r_link3_inertia[own][1][2];
         const real six_r_link3_inertia_zz = params->six_r_link3_inertia[own][2][2];
-        const real six_r_link4_mass = params->six_r_link4_mass[own];
+        KEEP_OF_LEG(six_r_link4_mass, params->six_r_link4_mass[own]);
         const real six_r_link4_centre_of_mass_x = params->six_r_link4_centre_of_mass[own][0];
         const real six_r_link4_centre_of_mass_y = params->six_r_link4_centre_of_mass[own][1];
         const real six_r_link4_centre_of_mass_z = params->six_r_link4_centre_of_mass[own][2];
@@ -903,7 +913,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real six_r_link4_inertia_yy = params->six_r_link4_inertia[own][1][1];
         const real six_r_link4_inertia_yz = params->six_r_link4_inertia[own][1][2];
         const real six_r_link4_inertia_zz = params->six_r_link4_inertia[own][2][2];
-        const real six_r_link5_mass = params->six_r_link5_mass[own];
+        KEEP_OF_LEG(six_r_link5_mass, params->six_r_link5_mass[own]);
         const real six_r_link5_centre_of_mass_x = params->six_r_link5_centre_of_mass[own][0];
         const real six_r_link5_centre_of_mass_y = params->six_r_link5_centre_of_mass[own][1];
         const real six_r_link5_centre_of_mass_z = params->six_r_link5_centre_of_mass[own][2];
@@ -914,162 +924,162 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real six_r_link5_inertia_yz = params->six_r_link5_inertia[own][1][2];
         const real six_r_link5_inertia_zz = params->six_r_link5_inertia[own][2][2];
         /* (six_r-size) length of the leg's lever arms, the measure of what is near singular */
-        const real six_r_size_t = six_r_platform_joint_offset_x*six_r_platform_joint_offset_x;
+        KEEP_OF_LEG(six_r_size_t, six_r_platform_joint_offset_x*six_r_platform_joint_offset_x);
         const real six_r_size_t_2 = R(6.98155500249e-07) +
             six_r_joint3_offset_x*six_r_joint3_offset_x +
             six_r_joint4_offset_x*six_r_joint4_offset_x +
             six_r_joint5_offset_x*six_r_joint5_offset_x + six_r_size_t;
-        const real six_r_size = root(six_r_size_t_2);
+        KEEP_OF_LEG(six_r_size, root(six_r_size_t_2));
         /* (six_r-h_1) first moment of link 1 about the origin of link 1 */
-        const real six_r_h_1_in_spec1_x = six_r_link1_centre_of_mass_x*six_r_link1_mass;
-        const real six_r_h_1_in_spec1_y = six_r_link1_centre_of_mass_y*six_r_link1_mass;
-        const real six_r_h_1_in_spec1_z = six_r_link1_centre_of_mass_z*six_r_link1_mass;
+        KEEP_OF_LEG(six_r_h_1_in_spec1_x, six_r_link1_centre_of_mass_x*six_r_link1_mass);
+        KEEP_OF_LEG(six_r_h_1_in_spec1_y, six_r_link1_centre_of_mass_y*six_r_link1_mass);
+        KEEP_OF_LEG(six_r_h_1_in_spec1_z, six_r_link1_centre_of_mass_z*six_r_link1_mass);
         /* (six_r-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real six_r_J_1_t = six_r_link1_centre_of_mass_x*six_r_link1_centre_of_mass_x;
         const real six_r_J_1_t_2 = six_r_J_1_t +
             six_r_link1_centre_of_mass_y*six_r_link1_centre_of_mass_y +
             six_r_link1_centre_of_mass_z*six_r_link1_centre_of_mass_z;
-        const real six_r_J_1_in_spec1_xx = six_r_link1_inertia_xx - six_r_link1_mass*(six_r_J_1_t
-            - six_r_J_1_t_2);
+        KEEP_OF_LEG(six_r_J_1_in_spec1_xx, six_r_link1_inertia_xx - six_r_link1_mass*(six_r_J_1_t
+            - six_r_J_1_t_2));
         /* (six_r-h_2) first moment of link 2 about the origin of link 2 */
-        const real six_r_h_2_in_spec2_x = six_r_link2_centre_of_mass_x*six_r_link2_mass;
-        const real six_r_h_2_in_spec2_y = six_r_link2_centre_of_mass_y*six_r_link2_mass;
-        const real six_r_h_2_in_spec2_z = six_r_link2_centre_of_mass_z*six_r_link2_mass;
+        KEEP_OF_LEG(six_r_h_2_in_spec2_x, six_r_link2_centre_of_mass_x*six_r_link2_mass);
+        KEEP_OF_LEG(six_r_h_2_in_spec2_y, six_r_link2_centre_of_mass_y*six_r_link2_mass);
+        KEEP_OF_LEG(six_r_h_2_in_spec2_z, six_r_link2_centre_of_mass_z*six_r_link2_mass);
         /* (six_r-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real six_r_J_2_t = six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_x;
         const real six_r_J_2_t_2 = six_r_link2_centre_of_mass_y*six_r_link2_centre_of_mass_y;
         const real six_r_J_2_t_3 = six_r_link2_centre_of_mass_z*six_r_link2_centre_of_mass_z;
         const real six_r_J_2_t_4 = six_r_J_2_t + six_r_J_2_t_2 + six_r_J_2_t_3;
-        const real six_r_J_2_in_spec2_xx = six_r_link2_inertia_xx - six_r_link2_mass*(six_r_J_2_t
-            - six_r_J_2_t_4);
-        const real six_r_J_2_in_spec2_xy = six_r_link2_inertia_xy -
-            six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_y*six_r_link2_mass;
-        const real six_r_J_2_in_spec2_xz = six_r_link2_inertia_xz -
-            six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_z*six_r_link2_mass;
-        const real six_r_J_2_in_spec2_yy = six_r_link2_inertia_yy -
-            six_r_link2_mass*(six_r_J_2_t_2 - six_r_J_2_t_4);
-        const real six_r_J_2_in_spec2_yz = six_r_link2_inertia_yz -
-            six_r_link2_centre_of_mass_y*six_r_link2_centre_of_mass_z*six_r_link2_mass;
-        const real six_r_J_2_in_spec2_zz = six_r_link2_inertia_zz -
-            six_r_link2_mass*(six_r_J_2_t_3 - six_r_J_2_t_4);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_xx, six_r_link2_inertia_xx - six_r_link2_mass*(six_r_J_2_t
+            - six_r_J_2_t_4));
+        KEEP_OF_LEG(six_r_J_2_in_spec2_xy, six_r_link2_inertia_xy -
+            six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_y*six_r_link2_mass);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_xz, six_r_link2_inertia_xz -
+            six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_z*six_r_link2_mass);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_yy, six_r_link2_inertia_yy -
+            six_r_link2_mass*(six_r_J_2_t_2 - six_r_J_2_t_4));
+        KEEP_OF_LEG(six_r_J_2_in_spec2_yz, six_r_link2_inertia_yz -
+            six_r_link2_centre_of_mass_y*six_r_link2_centre_of_mass_z*six_r_link2_mass);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_zz, six_r_link2_inertia_zz -
+            six_r_link2_mass*(six_r_J_2_t_3 - six_r_J_2_t_4));
         /* (six_r-h_3) first moment of link 3 about the origin of link 3 */
-        const real six_r_h_3_in_spec3_x = six_r_link3_centre_of_mass_x*six_r_link3_mass;
-        const real six_r_h_3_in_spec3_y = six_r_link3_centre_of_mass_y*six_r_link3_mass;
-        const real six_r_h_3_in_spec3_z = six_r_link3_centre_of_mass_z*six_r_link3_mass;
+        KEEP_OF_LEG(six_r_h_3_in_spec3_x, six_r_link3_centre_of_mass_x*six_r_link3_mass);
+        KEEP_OF_LEG(six_r_h_3_in_spec3_y, six_r_link3_centre_of_mass_y*six_r_link3_mass);
+        KEEP_OF_LEG(six_r_h_3_in_spec3_z, six_r_link3_centre_of_mass_z*six_r_link3_mass);
         /* (six_r-J_3) inertia tensor of link 3 about the origin of link 3 */
         const real six_r_J_3_t = six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_x;
         const real six_r_J_3_t_2 = six_r_link3_centre_of_mass_y*six_r_link3_centre_of_mass_y;
         const real six_r_J_3_t_3 = six_r_link3_centre_of_mass_z*six_r_link3_centre_of_mass_z;
         const real six_r_J_3_t_4 = six_r_J_3_t + six_r_J_3_t_2 + six_r_J_3_t_3;
-        const real six_r_J_3_in_spec3_xx = six_r_link3_inertia_xx - six_r_link3_mass*(six_r_J_3_t
-            - six_r_J_3_t_4);
-        const real six_r_J_3_in_spec3_xy = six_r_link3_inertia_xy -
-            six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_y*six_r_link3_mass;
-        const real six_r_J_3_in_spec3_xz = six_r_link3_inertia_xz -
-            six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_z*six_r_link3_mass;
-        const real six_r_J_3_in_spec3_yy = six_r_link3_inertia_yy -
-            six_r_link3_mass*(six_r_J_3_t_2 - six_r_J_3_t_4);
-        const real six_r_J_3_in_spec3_yz = six_r_link3_inertia_yz -
-            six_r_link3_centre_of_mass_y*six_r_link3_centre_of_mass_z*six_r_link3_mass;
-        const real six_r_J_3_in_spec3_zz = six_r_link3_inertia_zz -
-            six_r_link3_mass*(six_r_J_3_t_3 - six_r_J_3_t_4);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_xx, six_r_link3_inertia_xx - six_r_link3_mass*(six_r_J_3_t
+            - six_r_J_3_t_4));
+        KEEP_OF_LEG(six_r_J_3_in_spec3_xy, six_r_link3_inertia_xy -
+            six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_y*six_r_link3_mass);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_xz, six_r_link3_inertia_xz -
+            six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_z*six_r_link3_mass);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_yy, six_r_link3_inertia_yy -
+            six_r_link3_mass*(six_r_J_3_t_2 - six_r_J_3_t_4));
+        KEEP_OF_LEG(six_r_J_3_in_spec3_yz, six_r_link3_inertia_yz -
+            six_r_link3_centre_of_mass_y*six_r_link3_centre_of_mass_z*six_r_link3_mass);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_zz, six_r_link3_inertia_zz -
+            six_r_link3_mass*(six_r_J_3_t_3 - six_r_J_3_t_4));
         /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-        const real six_r_h_4_in_spec4_x = six_r_link4_centre_of_mass_x*six_r_link4_mass;
-        const real six_r_h_4_in_spec4_y = six_r_link4_centre_of_mass_y*six_r_link4_mass;
-        const real six_r_h_4_in_spec4_z = six_r_link4_centre_of_mass_z*six_r_link4_mass;
+        KEEP_OF_LEG(six_r_h_4_in_spec4_x, six_r_link4_centre_of_mass_x*six_r_link4_mass);
+        KEEP_OF_LEG(six_r_h_4_in_spec4_y, six_r_link4_centre_of_mass_y*six_r_link4_mass);
+        KEEP_OF_LEG(six_r_h_4_in_spec4_z, six_r_link4_centre_of_mass_z*six_r_link4_mass);
         /* (six_r-J_4) inertia tensor of link 4 about the origin of link 4 */
         const real six_r_J_4_t = six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_x;
         const real six_r_J_4_t_2 = six_r_link4_centre_of_mass_y*six_r_link4_centre_of_mass_y;
         const real six_r_J_4_t_3 = six_r_link4_centre_of_mass_z*six_r_link4_centre_of_mass_z;
         const real six_r_J_4_t_4 = six_r_J_4_t + six_r_J_4_t_2 + six_r_J_4_t_3;
-        const real six_r_J_4_in_spec4_xx = six_r_link4_inertia_xx - six_r_link4_mass*(six_r_J_4_t
-            - six_r_J_4_t_4);
-        const real six_r_J_4_in_spec4_xy = six_r_link4_inertia_xy -
-            six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_y*six_r_link4_mass;
-        const real six_r_J_4_in_spec4_xz = six_r_link4_inertia_xz -
-            six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_z*six_r_link4_mass;
-        const real six_r_J_4_in_spec4_yy = six_r_link4_inertia_yy -
-            six_r_link4_mass*(six_r_J_4_t_2 - six_r_J_4_t_4);
-        const real six_r_J_4_in_spec4_yz = six_r_link4_inertia_yz -
-            six_r_link4_centre_of_mass_y*six_r_link4_centre_of_mass_z*six_r_link4_mass;
+        KEEP_OF_LEG(six_r_J_4_in_spec4_xx, six_r_link4_inertia_xx - six_r_link4_mass*(six_r_J_4_t
+            - six_r_J_4_t_4));
+        KEEP_OF_LEG(six_r_J_4_in_spec4_xy, six_r_link4_inertia_xy -
+            six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_y*six_r_link4_mass);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_xz, six_r_link4_inertia_xz -
+            six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_z*six_r_link4_mass);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_yy, six_r_link4_inertia_yy -
+            six_r_link4_mass*(six_r_J_4_t_2 - six_r_J_4_t_4));
+        KEEP_OF_LEG(six_r_J_4_in_spec4_yz, six_r_link4_inertia_yz -
+            six_r_link4_centre_of_mass_y*six_r_link4_centre_of_mass_z*six_r_link4_mass);
         const real six_r_J_4_in_spec4_zz = six_r_link4_inertia_zz -
             six_r_link4_mass*(six_r_J_4_t_3 - six_r_J_4_t_4);
         /* (six_r-rho_tip_5) connection point to the centre of mass of link 5 */
         const real six_r_rho_tip_5_in_spec5_x = six_r_link5_centre_of_mass_x -
             six_r_platform_joint_offset_x;
         /* (six_r-h_5) first moment of link 5 about the connection point */
-        const real six_r_h_5_in_spec5_x = six_r_link5_mass*six_r_rho_tip_5_in_spec5_x;
-        const real six_r_h_5_in_spec5_y = six_r_link5_centre_of_mass_y*six_r_link5_mass;
-        const real six_r_h_5_in_spec5_z = six_r_link5_centre_of_mass_z*six_r_link5_mass;
+        KEEP_OF_LEG(six_r_h_5_in_spec5_x, six_r_link5_mass*six_r_rho_tip_5_in_spec5_x);
+        KEEP_OF_LEG(six_r_h_5_in_spec5_y, six_r_link5_centre_of_mass_y*six_r_link5_mass);
+        KEEP_OF_LEG(six_r_h_5_in_spec5_z, six_r_link5_centre_of_mass_z*six_r_link5_mass);
         /* (six_r-J_5) inertia tensor of link 5 about the connection point */
         const real six_r_J_5_t = six_r_rho_tip_5_in_spec5_x*six_r_rho_tip_5_in_spec5_x;
         const real six_r_J_5_t_2 = six_r_link5_centre_of_mass_y*six_r_link5_centre_of_mass_y;
         const real six_r_J_5_t_3 = six_r_link5_centre_of_mass_z*six_r_link5_centre_of_mass_z;
         const real six_r_J_5_t_4 = six_r_J_5_t + six_r_J_5_t_2 + six_r_J_5_t_3;
-        const real six_r_J_5_in_spec5_xx = six_r_link5_inertia_xx - six_r_link5_mass*(six_r_J_5_t
-            - six_r_J_5_t_4);
-        const real six_r_J_5_in_spec5_xy = six_r_link5_inertia_xy -
-            six_r_link5_centre_of_mass_y*six_r_link5_mass*six_r_rho_tip_5_in_spec5_x;
-        const real six_r_J_5_in_spec5_xz = six_r_link5_inertia_xz -
-            six_r_link5_centre_of_mass_z*six_r_link5_mass*six_r_rho_tip_5_in_spec5_x;
-        const real six_r_J_5_in_spec5_yy = six_r_link5_inertia_yy -
-            six_r_link5_mass*(six_r_J_5_t_2 - six_r_J_5_t_4);
-        const real six_r_J_5_in_spec5_yz = six_r_link5_inertia_yz -
-            six_r_link5_centre_of_mass_y*six_r_link5_centre_of_mass_z*six_r_link5_mass;
-        const real six_r_J_5_in_spec5_zz = six_r_link5_inertia_zz -
-            six_r_link5_mass*(six_r_J_5_t_3 - six_r_J_5_t_4);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_xx, six_r_link5_inertia_xx - six_r_link5_mass*(six_r_J_5_t
+            - six_r_J_5_t_4));
+        KEEP_OF_LEG(six_r_J_5_in_spec5_xy, six_r_link5_inertia_xy -
+            six_r_link5_centre_of_mass_y*six_r_link5_mass*six_r_rho_tip_5_in_spec5_x);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_xz, six_r_link5_inertia_xz -
+            six_r_link5_centre_of_mass_z*six_r_link5_mass*six_r_rho_tip_5_in_spec5_x);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_yy, six_r_link5_inertia_yy -
+            six_r_link5_mass*(six_r_J_5_t_2 - six_r_J_5_t_4));
+        KEEP_OF_LEG(six_r_J_5_in_spec5_yz, six_r_link5_inertia_yz -
+            six_r_link5_centre_of_mass_y*six_r_link5_centre_of_mass_z*six_r_link5_mass);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_zz, six_r_link5_inertia_zz -
+            six_r_link5_mass*(six_r_J_5_t_3 - six_r_J_5_t_4));
         /* (six_r-w_5) force part of reciprocal wrench 5 */
-        const real inv_six_r_size = 1/six_r_size;
+        KEEP_OF_LEG(inv_six_r_size, 1/six_r_size);
         /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real six_r_acc_3_t = gravity_x*six_r_base_frame_xy + gravity_y*six_r_base_frame_yy +
-            gravity_z*six_r_base_frame_zy;
-        const real six_r_acc_3_t_2 = gravity_x*six_r_base_frame_xz + gravity_y*six_r_base_frame_yz
-            + gravity_z*six_r_base_frame_zz;
-        const real six_r_g_in_axes1_z = gravity_x*six_r_base_frame_xx +
-            gravity_y*six_r_base_frame_yx + gravity_z*six_r_base_frame_zx;
+        KEEP_OF_LEG(six_r_acc_3_t, gravity_x*six_r_base_frame_xy + gravity_y*six_r_base_frame_yy +
+            gravity_z*six_r_base_frame_zy);
+        KEEP_OF_LEG(six_r_acc_3_t_2, gravity_x*six_r_base_frame_xz + gravity_y*six_r_base_frame_yz
+            + gravity_z*six_r_base_frame_zz);
+        KEEP_OF_LEG(six_r_g_in_axes1_z, gravity_x*six_r_base_frame_xx +
+            gravity_y*six_r_base_frame_yx + gravity_z*six_r_base_frame_zx);
         /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
            about the connection point */
-        const real six_r_Jc_4_in_axes4_yy = six_r_J_4_in_spec4_zz + six_r_J_5_in_spec5_zz;
+        KEEP_OF_LEG(six_r_Jc_4_in_axes4_yy, six_r_J_4_in_spec4_zz + six_r_J_5_in_spec5_zz);
         /* (six_r-hc_3) first moment of the links from 3 outwards */
-        const real six_r_hc_3_in_axes3_y = six_r_h_3_in_spec3_x + six_r_h_4_in_spec4_x +
-            six_r_joint4_offset_x*six_r_link4_mass;
+        KEEP_OF_LEG(six_r_hc_3_in_axes3_y, six_r_h_3_in_spec3_x + six_r_h_4_in_spec4_x +
+            six_r_joint4_offset_x*six_r_link4_mass);
         /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
            about the connection point */
         const real six_r_Jc_3_t = R(0.5)*six_r_link4_mass;
-        const real six_r_Jc_3_t_2 = six_r_joint4_offset_x*(six_r_h_4_in_spec4_x +
-            six_r_Jc_3_t*six_r_joint4_offset_x);
-        const real six_r_Jc_3_t_3 = 2*six_r_Jc_3_t_2;
+        KEEP_OF_LEG(six_r_Jc_3_t_2, six_r_joint4_offset_x*(six_r_h_4_in_spec4_x +
+            six_r_Jc_3_t*six_r_joint4_offset_x));
+        KEEP_OF_LEG(six_r_Jc_3_t_3, 2*six_r_Jc_3_t_2);
         /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real six_r_Jc_2_t = six_r_joint3_offset_x*(six_r_Jc_3_t + R(0.5)*six_r_link3_mass);
+        KEEP_OF_LEG(six_r_Jc_2_t, six_r_joint3_offset_x*(six_r_Jc_3_t + R(0.5)*six_r_link3_mass));
         /* (six_r-Sigma_5) second moment of mass of the links that turn with link 5 */
         const real six_r_Sigma_5_t = six_r_J_5_in_spec5_xx + six_r_J_5_in_spec5_yy +
             six_r_J_5_in_spec5_zz;
         const real six_r_Sigma_5_t_2 = R(0.5)*six_r_Sigma_5_t;
-        const real six_r_Sigma_5_in_axes5_xx = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_xx;
-        const real six_r_Sigma_5_in_axes5_yy = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_yy;
-        const real six_r_Sigma_5_in_axes5_zz = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_zz;
+        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_xx, six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_xx);
+        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_yy, six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_yy);
+        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_zz, six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_zz);
         /* (six_r-Sigma_4) second moment of mass of the links that turn with link 4 */
         const real six_r_Sigma_4_t = six_r_J_4_in_spec4_xx + six_r_J_4_in_spec4_yy +
             six_r_J_4_in_spec4_zz;
         const real six_r_Sigma_4_t_2 = R(0.5)*six_r_Sigma_4_t;
-        const real six_r_Sigma_4_in_axes4_xx = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_yy;
-        const real six_r_Sigma_4_in_axes4_yy = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_zz;
-        const real six_r_Sigma_4_in_axes4_zz = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_xx;
+        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_xx, six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_yy);
+        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_yy, six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_zz);
+        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_zz, six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_xx);
         /* (six_r-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real six_r_Sigma_3_t = six_r_J_3_in_spec3_xx + six_r_J_3_in_spec3_yy +
             six_r_J_3_in_spec3_zz;
         const real six_r_Sigma_3_t_2 = R(0.5)*six_r_Sigma_3_t;
-        const real six_r_Sigma_3_in_axes3_xx = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_yy;
-        const real six_r_Sigma_3_in_axes3_yy = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_xx;
-        const real six_r_Sigma_3_in_axes3_zz = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_zz;
+        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_xx, six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_yy);
+        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_yy, six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_xx);
+        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_zz, six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_zz);
         /* (six_r-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real six_r_Sigma_2_t = six_r_J_2_in_spec2_xx + six_r_J_2_in_spec2_yy +
             six_r_J_2_in_spec2_zz;
         const real six_r_Sigma_2_t_2 = R(0.5)*six_r_Sigma_2_t;
-        const real six_r_Sigma_2_in_axes2_xx = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_xx;
-        const real six_r_Sigma_2_in_axes2_yy = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_yy;
-        const real six_r_Sigma_2_in_axes2_zz = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_zz;
+        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_xx, six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_xx);
+        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_yy, six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_yy);
+        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_zz, six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_zz);
         /* (h_star) */
         const real six_r_h_star_t = six_r_link5_mass*six_r_platform_point_x;
         const real six_r_h_star_t_2 = six_r_link5_mass*six_r_platform_point_y;
@@ -1089,175 +1099,63 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
             six_r_link5_mass*six_r_platform_point_y*six_r_platform_point_z;
         const real six_r_J_star_t_10 = six_r_link5_mass*(six_r_J_star_t_3 - six_r_J_star_t_4);
         /* (potential) potential energy */
-        const real six_r_potential_t = six_r_base_frame_xy*six_r_base_point_x +
-            six_r_base_frame_yy*six_r_base_point_y + six_r_base_frame_zy*six_r_base_point_z;
-        const real six_r_potential_t_2 = six_r_base_frame_xz*six_r_base_point_x +
-            six_r_base_frame_yz*six_r_base_point_y + six_r_base_frame_zz*six_r_base_point_z;
-        const real six_r_potential_t_3 = six_r_base_frame_xx*six_r_base_point_x +
-            six_r_base_frame_yx*six_r_base_point_y + six_r_base_frame_zx*six_r_base_point_z;
-        KEEP_OF_LEG(inv_six_r_size);
-        KEEP_OF_LEG(six_r_J_1_in_spec1_xx);
-        KEEP_OF_LEG(six_r_J_2_in_spec2_xx);
-        KEEP_OF_LEG(six_r_J_2_in_spec2_xy);
-        KEEP_OF_LEG(six_r_J_2_in_spec2_xz);
-        KEEP_OF_LEG(six_r_J_2_in_spec2_yy);
-        KEEP_OF_LEG(six_r_J_2_in_spec2_yz);
-        KEEP_OF_LEG(six_r_J_2_in_spec2_zz);
-        KEEP_OF_LEG(six_r_J_3_in_spec3_xx);
-        KEEP_OF_LEG(six_r_J_3_in_spec3_xy);
-        KEEP_OF_LEG(six_r_J_3_in_spec3_xz);
-        KEEP_OF_LEG(six_r_J_3_in_spec3_yy);
-        KEEP_OF_LEG(six_r_J_3_in_spec3_yz);
-        KEEP_OF_LEG(six_r_J_3_in_spec3_zz);
-        KEEP_OF_LEG(six_r_J_4_in_spec4_xx);
-        KEEP_OF_LEG(six_r_J_4_in_spec4_xy);
-        KEEP_OF_LEG(six_r_J_4_in_spec4_xz);
-        KEEP_OF_LEG(six_r_J_4_in_spec4_yy);
-        KEEP_OF_LEG(six_r_J_4_in_spec4_yz);
-        KEEP_OF_LEG(six_r_J_5_in_spec5_xx);
-        KEEP_OF_LEG(six_r_J_5_in_spec5_xy);
-        KEEP_OF_LEG(six_r_J_5_in_spec5_xz);
-        KEEP_OF_LEG(six_r_J_5_in_spec5_yy);
-        KEEP_OF_LEG(six_r_J_5_in_spec5_yz);
-        KEEP_OF_LEG(six_r_J_5_in_spec5_zz);
-        KEEP_OF_LEG(six_r_Jc_2_t);
-        KEEP_OF_LEG(six_r_Jc_3_t_2);
-        KEEP_OF_LEG(six_r_Jc_3_t_3);
-        KEEP_OF_LEG(six_r_Jc_4_in_axes4_yy);
-        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_xx);
-        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_yy);
-        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_zz);
-        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_xx);
-        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_yy);
-        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_zz);
-        KEEP_OF_LEG(six_r_acc_3_t);
-        KEEP_OF_LEG(six_r_acc_3_t_2);
-        KEEP_OF_LEG(six_r_base_frame_xx);
-        KEEP_OF_LEG(six_r_base_frame_xy);
-        KEEP_OF_LEG(six_r_base_frame_xz);
-        KEEP_OF_LEG(six_r_base_frame_yx);
-        KEEP_OF_LEG(six_r_base_frame_yy);
-        KEEP_OF_LEG(six_r_base_frame_yz);
-        KEEP_OF_LEG(six_r_base_frame_zx);
-        KEEP_OF_LEG(six_r_base_frame_zy);
-        KEEP_OF_LEG(six_r_base_frame_zz);
-        KEEP_OF_LEG(six_r_base_point_x);
-        KEEP_OF_LEG(six_r_base_point_y);
-        KEEP_OF_LEG(six_r_base_point_z);
-        KEEP_OF_LEG(six_r_g_in_axes1_z);
-        KEEP_OF_LEG(six_r_h_1_in_spec1_x);
-        KEEP_OF_LEG(six_r_h_1_in_spec1_y);
-        KEEP_OF_LEG(six_r_h_1_in_spec1_z);
-        KEEP_OF_LEG(six_r_h_2_in_spec2_x);
-        KEEP_OF_LEG(six_r_h_2_in_spec2_y);
-        KEEP_OF_LEG(six_r_h_2_in_spec2_z);
-        KEEP_OF_LEG(six_r_h_3_in_spec3_x);
-        KEEP_OF_LEG(six_r_h_3_in_spec3_y);
-        KEEP_OF_LEG(six_r_h_3_in_spec3_z);
-        KEEP_OF_LEG(six_r_h_4_in_spec4_x);
-        KEEP_OF_LEG(six_r_h_4_in_spec4_y);
-        KEEP_OF_LEG(six_r_h_4_in_spec4_z);
-        KEEP_OF_LEG(six_r_h_5_in_spec5_x);
-        KEEP_OF_LEG(six_r_h_5_in_spec5_y);
-        KEEP_OF_LEG(six_r_h_5_in_spec5_z);
-        KEEP_OF_LEG(six_r_hc_3_in_axes3_y);
-        KEEP_OF_LEG(six_r_joint2_offset_x);
-        KEEP_OF_LEG(six_r_joint3_offset_x);
-        KEEP_OF_LEG(six_r_joint4_offset_x);
-        KEEP_OF_LEG(six_r_joint5_offset_x);
-        KEEP_OF_LEG(six_r_link1_mass);
-        KEEP_OF_LEG(six_r_link2_mass);
-        KEEP_OF_LEG(six_r_link3_mass);
-        KEEP_OF_LEG(six_r_link4_mass);
-        KEEP_OF_LEG(six_r_link5_mass);
-        KEEP_OF_LEG(six_r_platform_joint_axis_platform_x);
-        KEEP_OF_LEG(six_r_platform_joint_axis_platform_y);
-        KEEP_OF_LEG(six_r_platform_joint_axis_platform_z);
-        KEEP_OF_LEG(six_r_platform_joint_offset_x);
-        KEEP_OF_LEG(six_r_platform_point_x);
-        KEEP_OF_LEG(six_r_platform_point_y);
-        KEEP_OF_LEG(six_r_platform_point_z);
-        KEEP_OF_LEG(six_r_potential_t);
-        KEEP_OF_LEG(six_r_potential_t_2);
-        KEEP_OF_LEG(six_r_potential_t_3);
-        KEEP_OF_LEG(six_r_size);
-        KEEP_OF_LEG(six_r_size_t);
-        m_star_of_legs += leg < LEGS_OF_six_r ? six_r_link5_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_six_r ? six_r_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_six_r ? six_r_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_six_r ? six_r_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_six_r ? -six_r_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_six_r ? -six_r_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_six_r ? -six_r_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_six_r ? -six_r_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_six_r ? -six_r_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_six_r ? -six_r_J_star_t_10 : 0;
-        b_c_six_r_in_platform_x += leg < LEGS_OF_six_r ? six_r_platform_point_x : 0;
-        b_c_six_r_in_platform_y += leg < LEGS_OF_six_r ? six_r_platform_point_y : 0;
-        b_c_six_r_in_platform_z += leg < LEGS_OF_six_r ? six_r_platform_point_z : 0;
-        legs_size_six_r += leg < LEGS_OF_six_r ? six_r_size_t_2 : 0;
+        KEEP_OF_LEG(six_r_potential_t, six_r_base_frame_xy*six_r_base_point_x +
+            six_r_base_frame_yy*six_r_base_point_y + six_r_base_frame_zy*six_r_base_point_z);
+        KEEP_OF_LEG(six_r_potential_t_2, six_r_base_frame_xz*six_r_base_point_x +
+            six_r_base_frame_yz*six_r_base_point_y + six_r_base_frame_zz*six_r_base_point_z);
+        KEEP_OF_LEG(six_r_potential_t_3, six_r_base_frame_xx*six_r_base_point_x +
+            six_r_base_frame_yx*six_r_base_point_y + six_r_base_frame_zx*six_r_base_point_z);
+        if (leg < LEGS_OF_six_r) {
+            m_star_of_legs += six_r_link5_mass;
+            h_star_in_platform_x_of_legs += six_r_h_star_t;
+            h_star_in_platform_y_of_legs += six_r_h_star_t_2;
+            h_star_in_platform_z_of_legs += six_r_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -six_r_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -six_r_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -six_r_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -six_r_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -six_r_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -six_r_J_star_t_10;
+            b_c_six_r_in_platform_x += six_r_platform_point_x;
+            b_c_six_r_in_platform_y += six_r_platform_point_y;
+            b_c_six_r_in_platform_z += six_r_platform_point_z;
+            legs_size_six_r += six_r_size_t_2;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_six_r_in_platform_x;
-    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_six_r_in_platform_y;
-    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_six_r_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.16666666666666666)*b_c_six_r_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.16666666666666666)*b_c_six_r_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.16666666666666666)*b_c_six_r_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_six_r)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_six_r)*spread_t);
     return OK;
 }
 
@@ -1926,14 +1824,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1972,7 +1870,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -2123,7 +2021,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     v->six_r_c_4 = cosine(six_r_q_4);
     /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
     v->six_r_s_4 = sine(six_r_q_4);
-    /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
+    /* (six_r-h_4) */
     v->six_r_h_4_in_spec2_z = v->six_r_c_4*m->six_r_h_4_in_spec4_z[i] +
         m->six_r_h_4_in_spec4_y[i]*v->six_r_s_4;
     v->six_r_h_4_in_spec3_y = v->six_r_c_4*m->six_r_h_4_in_spec4_y[i] -
@@ -2268,7 +2166,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     v->six_r_bias_t_16 = m->six_r_joint4_offset_x[i]*v->six_r_s_5;
     v->six_r_d_5_in_axes5_x = v->six_r_c_5*m->six_r_joint5_offset_x[i];
     v->six_r_bias_t_17 = m->six_r_joint5_offset_x[i]*v->six_r_s_5;
-    /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (six_r-acc_3) */
     const real six_r_g_in_axes1_x = m->six_r_acc_3_t[i]*v->six_r_c_1 +
         m->six_r_acc_3_t_2[i]*v->six_r_s_1;
     v->six_r_g_in_axes1_y = m->six_r_acc_3_t_2[i]*v->six_r_c_1 -
@@ -2321,7 +2219,7 @@ INLINE void stage_six_r_A_q(size_t w, size_t j, const real *A, values_six_r *v)
 
 INLINE void stage_six_r_V_X(size_t w, size_t j, const real *V, values_six_r *v)
 {
-    /* (six_r-S_dot) velocity of the connection point */
+    /* (six_r-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->six_r_S_dot_t_14 = omega_y*v->six_r_q_z - omega_z*v->six_r_q_y;
@@ -2353,7 +2251,7 @@ INLINE void stage_six_r_V_q(size_t w, size_t j, const real *V, values_six_r *v)
 
 INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
 {
-    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    /* (six_r-n_m1) */
     const real six_r_n_m1_t_4 = v->six_r_c_1*v->six_r_n_m1_t + v->six_r_n_m1_t_2*v->six_r_s_1;
     const real six_r_n_m1_t_5 = v->six_r_c_1*v->six_r_n_m1_t_2 - v->six_r_n_m1_t*v->six_r_s_1;
     const real six_r_n_m1_t_6 = v->six_r_c_2*v->six_r_n_m1_t_3 + six_r_n_m1_t_4*v->six_r_s_2;
@@ -2562,7 +2460,7 @@ INLINE void stage_six_r_A_V_X(size_t w, size_t j, const real *s, const real *A, 
 
 INLINE void stage_six_r_A_X_q(size_t w, size_t j, const real *A, values_six_r *v)
 {
-    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    /* (six_r-etad_1) */
     const real alpha_x = A[3*w + j];
     const real alpha_y = A[4*w + j];
     const real alpha_z = A[5*w + j];
@@ -2577,17 +2475,17 @@ INLINE void stage_six_r_A_X_q(size_t w, size_t j, const real *A, values_six_r *v
 
 INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
 {
-    /* (six_r-S_dot) velocity of the connection point */
+    /* (six_r-S_dot) */
     const real six_r_S_dot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_dot_x +
         v->axis_x_six_r_axes5_y*v->six_r_S_dot_y + v->axis_x_six_r_axes5_z*v->six_r_S_dot_z;
     const real six_r_S_dot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_dot_x +
         v->axis_y_six_r_axes5_y*v->six_r_S_dot_y + v->axis_y_six_r_axes5_z*v->six_r_S_dot_z;
     const real six_r_S_dot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_dot_x +
         v->axis_z_six_r_axes5_y*v->six_r_S_dot_y + v->axis_z_six_r_axes5_z*v->six_r_S_dot_z;
-    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    /* (six_r-eta_1) */
     v->six_r_eta_1_2 = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_y -
         v->six_r_end_p1_in_axes5_y*v->six_r_omega_in_axes5_x;
-    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    /* (six_r-eta_2) */
     v->six_r_eta_2_t = v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_y -
         v->six_r_end_p1_in_axes5_y*v->six_r_omega_in_axes5_z;
     /* (six_r-qd_1) rate of joint 1 */
@@ -2731,7 +2629,7 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_beta_5_in_axes5_x_2 = v->six_r_zeta_5_in_axes5_x_2 +
         six_r_beta_4_in_axes5_x_2;
     const real six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 - v->six_r_zeta_5_t_2;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    /* (six_r-bias) */
     v->six_r_bias_t_19 = v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_3_in_axes4_y_2;
     v->six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2;
     const real six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
@@ -2816,7 +2714,7 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
 
 INLINE void stage_six_r_A_V_X_q(const prepared *m, size_t i, values_six_r *v)
 {
-    /* (six_r-S_ddot) acceleration of the connection point */
+    /* (six_r-S_ddot) */
     v->six_r_S_ddot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_ddot_x +
         v->axis_x_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_x_six_r_axes5_z*v->six_r_S_ddot_z;
     v->six_r_S_ddot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_ddot_x +
@@ -2827,9 +2725,9 @@ INLINE void stage_six_r_A_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_rel_in_axes5_x = v->six_r_S_ddot_in_axes5_x - v->six_r_bias_in_axes5_x_2;
     const real six_r_rel_in_axes5_y = v->six_r_S_ddot_in_axes5_y - v->six_r_bias_in_axes5_y_2;
     const real six_r_rel_in_axes5_z = v->six_r_S_ddot_in_axes5_z - v->six_r_bias_in_axes5_z_2;
-    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    /* (six_r-etad_1) */
     const real six_r_etad_1 = v->six_r_nu_1_2 - v->six_r_etad_1_t;
-    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
+    /* (six_r-etad_2) */
     const real six_r_etad_2 = v->six_r_nu_2_2 - v->six_r_etad_2_t;
     /* (six_r-qdd_1) acceleration of joint 1 */
     const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
@@ -2860,16 +2758,16 @@ INLINE void stage_six_r_A_V_X_q(const prepared *m, size_t i, values_six_r *v)
 INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_six_r *v)
 {
-    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    /* (six_r-eta_1) */
     const real omega_x = V[3*w + j];
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     const real six_r_eta_1 = omega_x*v->six_r_n_m1_x + omega_y*v->six_r_n_m1_y +
         omega_z*v->six_r_n_m1_z;
-    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    /* (six_r-eta_2) */
     const real six_r_eta_2 = omega_x*v->six_r_n_m2_x + omega_y*v->six_r_n_m2_y +
         omega_z*v->six_r_n_m2_z;
-    /* (six_r-qd_1) rate of joint 1 */
+    /* (six_r-qd_1) */
     const real six_r_qd_1_t = six_r_eta_1*m->six_r_size[i];
     const real six_r_qd_1_t_2 = six_r_eta_2*m->six_r_size[i];
     const real six_r_qd_1_t_12 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qd_1_t +
@@ -2882,27 +2780,27 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_qd_1_t*v->six_r_w_1_t_49 - six_r_qd_1_t_2*v->six_r_w_1_t_50 - v->six_r_qd_1_t_3
         - v->six_r_qd_1_t_5 + six_r_qd_1_t_12*v->six_r_w_1_t_57 +
         six_r_qd_1_t_13*v->six_r_w_1_t_51);
-    /* (six_r-qd_4) rate of joint 4 */
+    /* (six_r-qd_4) */
     const real six_r_qd_4 = v->inv_six_r_w_1_t_24*(six_r_qd_1_t*v->six_r_w_1_t_27 +
         six_r_qd_1_t_2*v->six_r_w_1_t_28 + v->six_r_qd_4_t_2 - v->six_r_qd_4_t +
         six_r_qd_1_t_12*v->six_r_w_1_t_40 + six_r_qd_1_t_13*v->six_r_w_1_t_35 -
         six_r_qd_1_t_14*v->six_r_w_1_t_29);
-    /* (six_r-qd_5) rate of joint 5 */
+    /* (six_r-qd_5) */
     const real six_r_qd_5 = v->inv_six_r_w_1_t_8*(six_r_qd_1_t_2*v->six_r_w_1_t_10 +
         v->six_r_qd_5_t + six_r_qd_1_t_12*v->six_r_w_1_t_21 -
         six_r_qd_1_t_13*v->six_r_w_1_t_18 + six_r_qd_1_t_14*v->six_r_w_1_t_14 -
         six_r_qd_4*v->six_r_w_1_t_11);
-    /* (six_r-omega_1) angular velocity of link 1 */
+    /* (six_r-omega_1) */
     const real six_r_omega_1_in_axes2_x = -v->six_r_c_2*six_r_qd_1_t_14;
     const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_14*v->six_r_s_2;
     const real six_r_omega_1_t = v->six_r_e_1_in_axes5_x*six_r_qd_1_t_14;
     const real six_r_omega_1_t_2 = v->six_r_e_1_in_axes5_y*six_r_qd_1_t_14;
     const real six_r_omega_1_t_3 = v->six_r_e_1_in_axes5_z*six_r_qd_1_t_14;
-    /* (six_r-W_1) centripetal tensor of link 1 */
+    /* (six_r-W_1) */
     const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
     const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
     const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
-    /* (six_r-omega_2) angular velocity of link 2 */
+    /* (six_r-omega_2) */
     const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v->six_r_s_3 -
         v->six_r_c_3*six_r_omega_1_in_axes2_y;
     const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
@@ -2912,13 +2810,13 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_13 -
         six_r_omega_1_t_2;
     const real six_r_omega_2_in_axes5_z = v->six_r_c_4*six_r_qd_1_t_13 - six_r_omega_1_t_3;
-    /* (six_r-W_2) centripetal tensor of link 2 */
+    /* (six_r-W_2) */
     const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13;
     const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
     const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
     const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
     const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-    /* (six_r-omega_3) angular velocity of link 3 */
+    /* (six_r-omega_3) */
     const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13;
     const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v->six_r_s_4 -
         v->six_r_c_4*six_r_omega_2_in_axes3_x;
@@ -2930,7 +2828,7 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_2_in_axes3_y*v->six_r_s_5;
-    /* (six_r-W_3) centripetal tensor of link 3 */
+    /* (six_r-W_3) */
     const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
     const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
@@ -2938,20 +2836,20 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
     const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-    /* (six_r-omega_4) angular velocity of link 4 */
+    /* (six_r-omega_4) */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
     const real six_r_omega_4_in_axes5_x = v->six_r_c_5*six_r_omega_4_in_axes4_z +
         six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_4_in_axes4_z*v->six_r_s_5;
-    /* (six_r-W_4) centripetal tensor of link 4 */
+    /* (six_r-W_4) */
     const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
     const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
     const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
     const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-    /* (six_r-omega_5) angular velocity of link 5 */
+    /* (six_r-omega_5) */
     const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
-    /* (six_r-W_5) centripetal tensor of link 5 */
+    /* (six_r-W_5) */
     const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
     const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
     const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
@@ -2967,7 +2865,7 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         v->axis_y_six_r_axes5_y*six_r_u_1_y + v->axis_y_six_r_axes5_z*six_r_u_1_z;
     const real six_r_u_1_in_axes5_z = v->axis_z_six_r_axes5_x*six_r_u_1_x +
         v->axis_z_six_r_axes5_y*six_r_u_1_y + v->axis_z_six_r_axes5_z*six_r_u_1_z;
-    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    /* (six_r-zeta_2) */
     const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_13;
     const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v->six_r_s_3 -
         v->six_r_c_3*six_r_zeta_2_in_axes2_y;
@@ -2979,18 +2877,18 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         v->six_r_s_5*six_r_zeta_2_t;
     const real six_r_zeta_2_in_axes5_y = -v->six_r_s_5*six_r_zeta_2_in_axes3_y -
         v->six_r_c_5*six_r_zeta_2_t;
-    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    /* (six_r-zeta_3) */
     const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12;
     const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12;
-    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    /* (six_r-beta_3) */
     const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
     const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
     const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_c_4;
     const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_s_4;
-    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    /* (six_r-zeta_4) */
     const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
     const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
-    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    /* (six_r-beta_4) */
     const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
     const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
     const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_c_5;
@@ -2999,13 +2897,13 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v->six_r_s_5;
     const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_c_5 -
         six_r_beta_4_t_2;
-    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
+    /* (six_r-zeta_5) */
     const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
     const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
-    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    /* (six_r-beta_5) */
     const real six_r_beta_5_in_axes5_x = six_r_zeta_5_in_axes5_x + six_r_beta_4_in_axes5_x;
     const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    /* (six_r-bias) */
     const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
     const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
     const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
@@ -3058,12 +2956,12 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
     const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
     const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
-    /* (six_r-nd_m1) rate of moment direction 1 */
+    /* (six_r-nd_m1) */
     const real six_r_nd_m1_in_axes5_x = -v->six_r_nd_m1_t -
         v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
     const real six_r_nd_m1_in_axes5_y = v->six_r_eta_2_t -
         v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    /* (six_r-nu_1) */
     const real six_r_nu_1_t = v->six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
     const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v->six_r_end_p1_in_axes5_y -
         six_r_beta_5_in_axes5_y*v->six_r_n_m1_in_axes5_y;
@@ -3074,12 +2972,12 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
         six_r_nu_1_t_5*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
     const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-    /* (six_r-nd_m2) rate of moment direction 2 */
+    /* (six_r-nd_m2) */
     const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1_2 -
         v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
     const real six_r_nd_m2_in_axes5_z = v->six_r_nd_m1_t -
         v->six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    /* (six_r-nu_2) */
     const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
         six_r_beta_4_in_axes4_y*v->six_r_end_p1_in_axes5_y;
     const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
@@ -3427,10 +3325,10 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
 
 INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
 {
-    /* (six_r-J_5) inertia tensor of link 5 about the connection point */
+    /* (six_r-J_5) */
     const real six_r_J_5_in_axes4_yz = m->six_r_J_5_in_spec5_xz[i]*v->six_r_c_5 -
         m->six_r_J_5_in_spec5_yz[i]*v->six_r_s_5;
-    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    /* (six_r-w_1) */
     const real six_r_w_1_t_79 = v->inv_six_r_w_1_t_45*v->inv_six_r_w_1_t_63*v->six_r_w_1_t_51;
     const real six_r_w_1_t_80 = v->inv_six_r_w_1_t_75*(v->inv_six_r_w_1_t_45*v->six_r_w_1_t_57
         - v->six_r_w_1_t_69*six_r_w_1_t_79);
@@ -3440,10 +3338,10 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         v->inv_six_r_w_1_t_45*v->six_r_w_1_t_47 + v->six_r_w_1_t_77*six_r_w_1_t_80;
     const real six_r_w_1_in_axes5_z = v->inv_six_r_w_1_t_45*v->six_r_w_1_t_48 -
         v->six_r_w_1_t_66*six_r_w_1_t_79 - v->six_r_w_1_t_78*six_r_w_1_t_80;
-    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    /* (six_r-m1_w_1) */
     const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(v->six_r_w_1_t_67*six_r_w_1_t_79 -
         v->inv_six_r_w_1_t_45*v->six_r_w_1_t_49 + v->six_r_m1_w_1_t*six_r_w_1_t_80);
-    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    /* (six_r-m2_w_1) */
     const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(v->six_r_w_1_t_68*six_r_w_1_t_79 -
         v->inv_six_r_w_1_t_45*v->six_r_w_1_t_50 + v->six_r_m2_w_1_t*six_r_w_1_t_80);
     /* (six_r-w_3) force part of reciprocal wrench 3 */
@@ -3476,7 +3374,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     const real six_r_m2_w_4 = m->six_r_size[i]*(v->inv_six_r_w_1_t_24*v->six_r_w_1_t_28 +
         v->six_r_w_1_t_50*six_r_w_4_t + v->six_r_w_1_t_68*six_r_w_4_t_2 -
         v->six_r_m2_w_1_t*six_r_w_4_t_3);
-    /* (six_r-w_5) force part of reciprocal wrench 5 */
+    /* (six_r-w_5) */
     const real six_r_w_5_t = v->inv_six_r_w_1_t_24*v->inv_six_r_w_1_t_8*v->six_r_w_1_t_11;
     const real six_r_w_5_t_2 = v->inv_six_r_w_1_t_45*(v->inv_six_r_w_1_t_8*v->six_r_w_1_t_14 +
         v->six_r_w_1_t_29*six_r_w_5_t);
@@ -3581,8 +3479,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     const real six_r_D_1_5 = m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_1_in_axes5_z +
         m->six_r_J_5_in_spec5_xz[i]*v->six_r_e_1_in_axes5_x +
         m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_1_in_axes5_y;
-    /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
-       about the connection point */
+    /* (six_r-Jc_4) */
     const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*v->six_r_s_5;
     const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*v->six_r_c_5;
     const real six_r_Jc_4_t_3 = m->six_r_J_5_in_spec5_xx[i]*v->six_r_s_5 + six_r_Jc_4_t_2;
@@ -3614,13 +3511,12 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         v->six_r_c_3*v->six_r_h_4_in_spec2_z*m->six_r_joint3_offset_x[i];
     const real six_r_L_c_4_2_in_axes1_z = v->six_r_c_2*(six_r_Jc_4_in_axes4_zz*v->six_r_c_3 +
         six_r_L_c_4_3_in_axes3_x*v->six_r_s_3) - six_r_L_c_4_2_in_axes2_y*v->six_r_s_2;
-    /* (six_r-hc_3) first moment of the links from 3 outwards */
+    /* (six_r-hc_3) */
     const real six_r_hc_3_in_axes3_x = -m->six_r_h_3_in_spec3_y[i] - v->six_r_h_4_in_spec3_y;
     const real six_r_hc_3_in_axes3_z = m->six_r_h_3_in_spec3_z[i] + v->six_r_h_4_in_spec2_z;
     const real six_r_hc_3_in_axes2_x = v->six_r_c_3*m->six_r_hc_3_in_axes3_y[i] +
         six_r_hc_3_in_axes3_x*v->six_r_s_3;
-    /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
-       about the connection point */
+    /* (six_r-Jc_3) */
     const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*v->six_r_s_4;
     const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*v->six_r_c_4 - six_r_Jc_3_t;
     const real six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*v->six_r_c_4;
@@ -3650,8 +3546,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_Jc_3_in_axes3_zz;
     const real six_r_L_c_3_2_in_axes1_z = six_r_Jc_3_in_axes2_xz*v->six_r_c_2 -
         six_r_Jc_3_in_axes2_yz*v->six_r_s_2;
-    /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
+    /* (six_r-Jc_2) */
     const real six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*v->six_r_s_3;
     const real six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xy*v->six_r_c_3;
     const real six_r_Jc_2_t_4 = six_r_Jc_3_in_axes3_xx*v->six_r_s_3 + six_r_Jc_2_t_3;
@@ -3727,8 +3622,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_yz*six_r_o_5_t -
         six_r_L_c_4_2_in_axes1_z*six_r_o_1_t +
         six_r_L_c_4_2_in_axes2_z*v->six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-       inertia and weight */
+    /* (six_r-d_Gamma_4) */
     const real six_r_d_Gamma_4_t_2 = v->inv_six_r_w_1_t_8*six_r_J_5_in_axes4_yz;
     const real six_r_d_Gamma_4_t_3 = v->inv_six_r_w_1_t_24*(six_r_Jc_4_in_axes4_zz -
         six_r_d_Gamma_4_t_2*v->six_r_w_1_t_11);
@@ -4213,7 +4107,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
 
 INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r *v)
 {
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    /* (six_r-o_2) */
     v->six_r_o_2_x_2 = v->axis_y_six_r_axes5_x*v->six_r_o_2_in_axes5_y +
         v->axis_z_six_r_axes5_x*v->six_r_o_2_in_axes5_z -
         v->axis_x_six_r_axes5_x*v->six_r_o_2_t;
@@ -4223,9 +4117,9 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     v->six_r_o_2_z_2 = v->axis_y_six_r_axes5_z*v->six_r_o_2_in_axes5_y +
         v->axis_z_six_r_axes5_z*v->six_r_o_2_in_axes5_z -
         v->axis_x_six_r_axes5_z*v->six_r_o_2_t;
-    /* (six_r-W_2) centripetal tensor of link 2 */
+    /* (six_r-W_2) */
     const real six_r_W_2_in_axes2_xy_2 = -v->six_r_omega_1_in_axes2_x_2*v->six_r_omega_1_t_4;
-    /* (six_r-W_3) centripetal tensor of link 3 */
+    /* (six_r-W_3) */
     const real six_r_W_3_t_4 = v->six_r_omega_2_in_axes3_x_2*v->six_r_omega_2_in_axes3_x_2;
     const real six_r_W_3_t_5 = v->six_r_omega_3_in_axes3_z_2*v->six_r_omega_3_in_axes3_z_2;
     const real six_r_W_3_in_axes3_xy_2 =
@@ -4235,14 +4129,14 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_W_3_t_6 = six_r_W_3_t_5 + six_r_W_3_t_4;
     const real six_r_W_3_in_axes3_yz_2 =
         v->six_r_omega_2_in_axes3_y_2*v->six_r_omega_3_in_axes3_z_2;
-    /* (six_r-W_4) centripetal tensor of link 4 */
+    /* (six_r-W_4) */
     const real six_r_W_4_in_axes4_xy_2 =
         v->six_r_omega_3_in_axes4_x_2*v->six_r_omega_3_in_axes4_y_2;
     const real six_r_W_4_in_axes4_xz_2 =
         v->six_r_omega_3_in_axes4_x_2*v->six_r_omega_4_in_axes4_z_2;
     const real six_r_W_4_in_axes4_yz_2 =
         v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_4_in_axes4_z_2;
-    /* (six_r-W_5) centripetal tensor of link 5 */
+    /* (six_r-W_5) */
     const real six_r_W_5_in_axes5_yz_2 =
         v->six_r_omega_4_in_axes5_y_2*v->six_r_omega_5_in_axes5_z_2;
     /* (six_r-alpha_1) angular acceleration of link 1 */
@@ -4315,7 +4209,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         six_r_W_3_t_6*m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
         six_r_B_3_in_axes3_zy*m->six_r_joint4_offset_x[i];
-    /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (six_r-acc_3) */
     const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - v->six_r_g_in_axes3_x;
     const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - v->six_r_g_in_axes3_y;
     const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - v->six_r_g_in_axes1_y;
@@ -4333,7 +4227,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t_4 + six_r_f_3_t) +
         six_r_acc_3_in_axes3_z*m->six_r_link3_mass[i] -
         six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
-    /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
+    /* (six_r-acc_4) */
     const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_s_4 -
         v->six_r_g_in_axes4_x - six_r_a_o_4_in_axes3_x*v->six_r_c_4;
     const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_s_4 -
@@ -4358,7 +4252,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->six_r_c_4*six_r_f_4_in_axes4_x;
     const real six_r_f_4_in_axes3_z = v->six_r_c_4*six_r_f_4_in_axes4_y +
         six_r_f_4_in_axes4_x*v->six_r_s_4;
-    /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
+    /* (six_r-acc_5) */
     v->six_r_acc_5_in_axes5_x = v->six_r_S_ddot_in_axes5_x - v->six_r_g_in_axes5_x;
     v->six_r_acc_5_in_axes5_y = v->six_r_S_ddot_in_axes5_y - v->six_r_g_in_axes5_y;
     v->six_r_acc_5_in_axes5_z = v->six_r_S_ddot_in_axes5_z - v->six_r_g_in_axes5_z;
@@ -4448,7 +4342,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
     const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
     const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
-    /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (six_r-mu_2) */
     const real six_r_mu_2_t_4 = v->six_r_omega_1_in_axes2_x_2*v->six_r_omega_1_in_axes2_x_2;
     const real six_r_mu_2_in_axes2_x = m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_t -
         six_r_a_o_3_t_2) - v->six_r_mu_2_t + six_r_B_2_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i]
@@ -4477,7 +4371,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_N_2_in_axes2_z = six_r_mu_2_in_axes2_z -
         m->six_r_joint3_offset_x[i]*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
         six_r_T_3_in_axes3_y*v->six_r_s_3) + six_r_N_3_in_axes3_z;
-    /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (six_r-mu_1) */
     const real six_r_mu_1_in_axes1_z = -v->six_r_mu_1_t -
         m->six_r_J_1_in_spec1_xx[i]*v->six_r_qdd_1_t_5;
     /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
@@ -4586,7 +4480,7 @@ INLINE void any_sums_six_r(size_t k, size_t count, int add, const values_six_r *
     gather(&terms[3*count + k], add, v->six_r_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->six_r_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->six_r_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->six_r_M_ta_t_13);  /* M_ta_xx */
     gather(&terms[7*count + k], add, v->six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v->six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
@@ -4596,7 +4490,7 @@ INLINE void any_sums_six_r(size_t k, size_t count, int add, const values_six_r *
     gather(&terms[12*count + k], add, v->six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
     gather(&terms[14*count + k], add, v->six_r_M_ta_t_21);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[15*count + k], add, v->six_r_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[16*count + k], add, v->six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[17*count + k], add, v->six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -4611,7 +4505,7 @@ INLINE void any_sums_six_r_2(size_t k, size_t count, int add, const values_six_r
     gather(&terms[0*count + k], add, v->six_r_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->six_r_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->six_r_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->six_r_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->six_r_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->six_r_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -4619,7 +4513,7 @@ INLINE void any_sums_six_r_2(size_t k, size_t count, int add, const values_six_r
 
 INLINE void any_entries_six_r(size_t k, size_t count, const values_six_r *v, real *o)
 {
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    /* (six_r-w_2) */
     o[0*count + k] = v->six_r_w_2_x;
     o[1*count + k] = v->six_r_w_2_y;
     o[2*count + k] = v->six_r_w_2_z;
@@ -4627,7 +4521,7 @@ INLINE void any_entries_six_r(size_t k, size_t count, const values_six_r *v, rea
 
 INLINE void any_entries_six_r_2(size_t k, size_t count, const values_six_r *v, real *o)
 {
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    /* (six_r-H_a_2) */
     o[0*count + k] = v->six_r_H_a_2_x;
     o[1*count + k] = v->six_r_H_a_2_y;
     o[2*count + k] = v->six_r_H_a_2_z;
@@ -4641,6 +4535,136 @@ INLINE void any_singular_six_r(const prepared *m, size_t i, size_t k, const valu
         UNLESS(magnitude(v->six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
         UNLESS(magnitude(v->six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
         UNLESS(magnitude(v->six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_six_r_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -4699,7 +4723,7 @@ INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
-    /* (six_r-S) from the base point to the connection point */
+    /* (six_r-S) */
     const real t_x = X[0*w + j];
     const real six_r_S_x = t_x - m->six_r_base_point_x[i] + v.six_r_q_x;
     const real t_y = X[1*w + j];
@@ -4737,32 +4761,32 @@ INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size
     o[0*count + k] = six_r_residual_in_axes5_x;
     o[1*count + k] = six_r_residual_in_axes5_y;
     o[2*count + k] = six_r_residual_in_axes5_z;
-    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    /* (six_r-v_1) */
     o[3*count + k] = v.six_r_v_1_in_axes5_x;
     o[4*count + k] = v.six_r_v_1_in_axes5_y;
     o[5*count + k] = v.six_r_v_1_in_axes5_z;
-    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
+    /* (six_r-v_2) */
     o[6*count + k] = v.six_r_v_2_in_axes5_x;
     o[7*count + k] = v.six_r_v_2_in_axes5_y;
     o[8*count + k] = v.six_r_v_2_in_axes5_z;
-    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
+    /* (six_r-v_3) */
     o[9*count + k] = v.six_r_v_3_in_axes5_x;
     o[10*count + k] = v.six_r_v_3_in_axes5_y;
     o[11*count + k] = v.six_r_v_3_in_axes5_z;
-    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
+    /* (six_r-v_4) */
     o[12*count + k] = v.six_r_v_4_in_axes5_z;
     /* (six_r-v_5) velocity of the connection point per rate of joint 5 */
     o[13*count + k] = m->six_r_platform_joint_offset_x[i];
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     o[14*count + k] = -v.six_r_end_p1_in_axes5_z;
-    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    /* (six_r-n_m1) */
     o[15*count + k] = -v.six_r_n_m1_t_11;
     o[16*count + k] = -v.six_r_n_m1_t_12;
     o[17*count + k] = -v.six_r_n_m1_t_12;
     o[18*count + k] = v.six_r_n_m1_in_axes4_z;
     /* (legs_size) */
     o[19*count + k] = -v.six_r_n_m1_in_axes5_y;
-    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    /* (six_r-n_m2) */
     o[20*count + k] = -v.six_r_n_m2_t;
     o[21*count + k] = -v.six_r_n_m2_t_2;
     o[22*count + k] = -v.six_r_n_m2_t_2;
@@ -4917,125 +4941,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 21*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
@@ -5107,97 +5014,7 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
@@ -5222,7 +5039,7 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict M,
+APART void M_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict M,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -5278,35 +5095,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -5333,7 +5122,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
     *restrict Z, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -5497,8 +5286,7 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     stage_six_r_V_X_q(m, i, &v);
     stage_six_r_A_V_X_q(m, i, &v);
     stage_six_r_legs_required(m, i, &v);
-    /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (six_r-c) */
     const real six_r_c_x = v.axis_x_six_r_axes5_x*v.six_r_c_in_axes5_x +
         v.axis_y_six_r_axes5_x*v.six_r_c_in_axes5_y +
         v.axis_z_six_r_axes5_x*v.six_r_c_in_axes5_z;
@@ -5508,15 +5296,15 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_c_z = v.axis_x_six_r_axes5_z*v.six_r_c_in_axes5_x +
         v.axis_y_six_r_axes5_z*v.six_r_c_in_axes5_y +
         v.axis_z_six_r_axes5_z*v.six_r_c_in_axes5_z;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real six_r_R_a_t = six_r_c_y*v.six_r_q_z - six_r_c_z*v.six_r_q_y - v.six_r_c_m_x;
     const real six_r_R_a_t_2 = six_r_c_z*v.six_r_q_x - six_r_c_x*v.six_r_q_z - v.six_r_c_m_y;
     const real six_r_R_a_t_3 = six_r_c_x*v.six_r_q_y - six_r_c_y*v.six_r_q_x - v.six_r_c_m_z;
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    /* (six_r-H_a_2) */
     const real six_r_H_a_2_x_2 = v.six_r_H_a_2_t + v.six_r_o_2_x_2;
     const real six_r_H_a_2_y_2 = v.six_r_H_a_2_t_2 + v.six_r_o_2_y_2;
     const real six_r_H_a_2_z_2 = v.six_r_H_a_2_t_3 + v.six_r_o_2_z_2;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, six_r_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, six_r_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, six_r_c_z);  /* R_t_z_of_legs */
@@ -5546,7 +5334,7 @@ INLINE void required_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -5556,7 +5344,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -5604,7 +5392,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *joints, real *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
@@ -5641,7 +5429,7 @@ INLINE void inverse_kinematics_legs_six_r(size_t w, size_t i, size_t j, size_t k
     static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
     static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
     static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
     o[0*count + k] = six_r_q_1;
     const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
@@ -5705,15 +5493,15 @@ INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
     stage_six_r_V_X_q(m, i, &v);
-    /* (six_r-qd_1) rate of joint 1 */
+    /* (six_r-qd_1) */
     o[0*count + k] = v.six_r_qd_1;
     /* (six_r-qd_2) rate of joint 2 */
     o[1*count + k] = -v.six_r_qd_1_t_18;
     /* (six_r-qd_3) rate of joint 3 */
     o[2*count + k] = -v.six_r_qd_1_t_17;
-    /* (six_r-qd_4) rate of joint 4 */
+    /* (six_r-qd_4) */
     o[3*count + k] = v.six_r_qd_4_2;
-    /* (six_r-qd_5) rate of joint 5 */
+    /* (six_r-qd_5) */
     o[4*count + k] = v.six_r_qd_5_2;
     any_singular_six_r(m, i, k, &v, o + 5*count);
     o[6*count + k] = (v.six_r_qd_1 + v.six_r_qd_1_t_18) + (v.six_r_qd_1_t_17 + (v.six_r_qd_4_2
@@ -5787,15 +5575,15 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     stage_six_r_A_X_q(w, j, A, &v);
     stage_six_r_V_X_q(m, i, &v);
     stage_six_r_A_V_X_q(m, i, &v);
-    /* (six_r-qdd_1) acceleration of joint 1 */
+    /* (six_r-qdd_1) */
     o[0*count + k] = -v.six_r_qdd_1_t_5;
     /* (six_r-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.six_r_qdd_1_t_4;
     /* (six_r-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.six_r_qdd_1_t_3;
-    /* (six_r-qdd_4) acceleration of joint 4 */
+    /* (six_r-qdd_4) */
     o[3*count + k] = v.six_r_qdd_4;
-    /* (six_r-qdd_5) acceleration of joint 5 */
+    /* (six_r-qdd_5) */
     o[4*count + k] = v.six_r_qdd_5;
     any_singular_six_r(m, i, k, &v, o + 5*count);
     o[6*count + k] = (v.six_r_qdd_1_t_5 + v.six_r_qdd_1_t_4) + (v.six_r_qdd_1_t_3 +
@@ -5890,15 +5678,15 @@ INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = six_r_c_true_x;
     o[1*count + k] = six_r_c_true_y;
     o[2*count + k] = six_r_c_true_z;
-    /* (six_r-c_m) moment of the leg on the platform without actuation */
+    /* (six_r-c_m) */
     o[3*count + k] = v.six_r_c_m_x;
     o[4*count + k] = v.six_r_c_m_y;
     o[5*count + k] = v.six_r_c_m_z;
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    /* (six_r-w_2) */
     o[6*count + k] = v.six_r_w_2_x;
     o[7*count + k] = v.six_r_w_2_y;
     o[8*count + k] = v.six_r_w_2_z;
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    /* (six_r-o_2) */
     o[9*count + k] = v.six_r_o_2_x_2;
     o[10*count + k] = v.six_r_o_2_y_2;
     o[11*count + k] = v.six_r_o_2_z_2;
@@ -5954,7 +5742,7 @@ INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -6062,7 +5850,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -6075,7 +5863,7 @@ INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
-    /* (six_r-w_5) force part of reciprocal wrench 5 */
+    /* (six_r-w_5) */
     const real six_r_pivot_size = magnitude(v.six_r_w_1_t_8);
     const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_24);
     const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_45);
@@ -6119,7 +5907,7 @@ INLINE void condition_place_six_r(size_t w, size_t i, size_t k, size_t at, size_
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_six_r = sums[0*w + k];
     const real spread_ = root(spread_six_r)*m->spread_t;
     /* (spread) */
@@ -7043,13 +6831,12 @@ int hexapod_6x6r_rotation(const real *X, real *R_out)
 
 int hexapod_6x6r_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
@@ -7068,13 +6855,12 @@ int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HYBRID_3CRS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3CRS_LANES >= 4 && VECTORS_OF(HYBRID_3CRS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -614,8 +631,9 @@ static int acceptable(const hybrid_3crs_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *model)
 {
@@ -637,9 +655,9 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
     real b_c_crs_in_platform_y = 0;
     real b_c_crs_in_platform_z = 0;
     real legs_size_crs = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -666,36 +684,32 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_crs); ++leg) {
         const size_t own = leg < LEGS_OF_crs ? leg : 0;
-        const real crs_base_point_x = params->crs_base_point[own][0];
-        const real crs_base_point_y = params->crs_base_point[own][1];
-        const real crs_base_point_z = params->crs_base_point[own][2];
-        const real crs_base_frame_xx = params->crs_base_frame[own][0][0];
-        const real crs_base_frame_xy = params->crs_base_frame[own][0][1];
-        const real crs_base_frame_xz = params->crs_base_frame[own][0][2];
-        const real crs_base_frame_yx = params->crs_base_frame[own][1][0];
-        const real crs_base_frame_yy = params->crs_base_frame[own][1][1];
-        const real crs_base_frame_yz = params->crs_base_frame[own][1][2];
-        const real crs_base_frame_zx = params->crs_base_frame[own][2][0];
-        const real crs_base_frame_zy = params->crs_base_frame[own][2][1];
-        const real crs_base_frame_zz = params->crs_base_frame[own][2][2];
-        const real crs_platform_point_x = params->crs_platform_point[own][0];
-        const real crs_platform_point_y = params->crs_platform_point[own][1];
-        const real crs_platform_point_z = params->crs_platform_point[own][2];
-        const real crs_joint3_offset_x = params->crs_joint3_offset[own][0];
-        const real crs_platform_joint_offset_x = params->crs_platform_joint_offset[own][0];
-        const real crs_link2_mass = params->crs_link2_mass[own];
+        KEEP_OF_LEG(crs_base_point_x, params->crs_base_point[own][0]);
+        KEEP_OF_LEG(crs_base_point_y, params->crs_base_point[own][1]);
+        KEEP_OF_LEG(crs_base_point_z, params->crs_base_point[own][2]);
+        KEEP_OF_LEG(crs_base_frame_xx, params->crs_base_frame[own][0][0]);
+        KEEP_OF_LEG(crs_base_frame_xy, params->crs_base_frame[own][0][1]);
+        KEEP_OF_LEG(crs_base_frame_xz, params->crs_base_frame[own][0][2]);
+        KEEP_OF_LEG(crs_base_frame_yx, params->crs_base_frame[own][1][0]);
+        KEEP_OF_LEG(crs_base_frame_yy, params->crs_base_frame[own][1][1]);
+        KEEP_OF_LEG(crs_base_frame_yz, params->crs_base_frame[own][1][2]);
+        KEEP_OF_LEG(crs_base_frame_zx, params->crs_base_frame[own][2][0]);
+        KEEP_OF_LEG(crs_base_frame_zy, params->crs_base_frame[own][2][1]);
+        KEEP_OF_LEG(crs_base_frame_zz, params->crs_base_frame[own][2][2]);
+        KEEP_OF_LEG(crs_platform_point_x, params->crs_platform_point[own][0]);
+        KEEP_OF_LEG(crs_platform_point_y, params->crs_platform_point[own][1]);
+        KEEP_OF_LEG(crs_platform_point_z, params->crs_platform_point[own][2]);
+        KEEP_OF_LEG(crs_joint3_offset_x, params->crs_joint3_offset[own][0]);
+        KEEP_OF_LEG(crs_platform_joint_offset_x, params->crs_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(crs_link2_mass, params->crs_link2_mass[own]);
         const real crs_link2_centre_of_mass_x = params->crs_link2_centre_of_mass[own][0];
         const real crs_link2_centre_of_mass_y = params->crs_link2_centre_of_mass[own][1];
         const real crs_link2_centre_of_mass_z = params->crs_link2_centre_of_mass[own][2];
         const real crs_link2_inertia_xx = params->crs_link2_inertia[own][0][0];
-        const real crs_link3_mass = params->crs_link3_mass[own];
+        KEEP_OF_LEG(crs_link3_mass, params->crs_link3_mass[own]);
         const real crs_link3_centre_of_mass_x = params->crs_link3_centre_of_mass[own][0];
         const real crs_link3_centre_of_mass_y = params->crs_link3_centre_of_mass[own][1];
         const real crs_link3_centre_of_mass_z = params->crs_link3_centre_of_mass[own][2];
@@ -706,68 +720,68 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real crs_link3_inertia_yz = params->crs_link3_inertia[own][1][2];
         const real crs_link3_inertia_zz = params->crs_link3_inertia[own][2][2];
         static const signed char signs_crs_branch_1[] = {1, 1, 1};
-        const real crs_branch_1 = signs_crs_branch_1[own];
+        KEEP_OF_LEG(crs_branch_1, signs_crs_branch_1[own]);
         static const signed char signs_crs_branch_2[] = {-1, -1, -1};
-        const real crs_branch_2 = signs_crs_branch_2[own];
+        KEEP_OF_LEG(crs_branch_2, signs_crs_branch_2[own]);
         /* (crs-size) length of the leg's lever arms, the measure of what is near singular */
-        const real crs_size_t = crs_platform_joint_offset_x*crs_platform_joint_offset_x;
-        const real crs_size_t_2 = R(0.30250000000000005) + crs_size_t;
-        const real crs_size = root(crs_size_t_2);
+        KEEP_OF_LEG(crs_size_t, crs_platform_joint_offset_x*crs_platform_joint_offset_x);
+        KEEP_OF_LEG(crs_size_t_2, R(0.30250000000000005) + crs_size_t);
+        KEEP_OF_LEG(crs_size, root(crs_size_t_2));
         /* (crs-h_2) first moment of link 2 about the origin of link 2 */
-        const real crs_h_2_in_spec1_x = crs_link2_centre_of_mass_x*crs_link2_mass;
-        const real crs_h_2_in_spec1_y = crs_link2_centre_of_mass_y*crs_link2_mass;
-        const real crs_h_2_in_spec1_z = crs_link2_centre_of_mass_z*crs_link2_mass;
+        KEEP_OF_LEG(crs_h_2_in_spec1_x, crs_link2_centre_of_mass_x*crs_link2_mass);
+        KEEP_OF_LEG(crs_h_2_in_spec1_y, crs_link2_centre_of_mass_y*crs_link2_mass);
+        KEEP_OF_LEG(crs_h_2_in_spec1_z, crs_link2_centre_of_mass_z*crs_link2_mass);
         /* (crs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real crs_J_2_t = crs_link2_centre_of_mass_x*crs_link2_centre_of_mass_x;
         const real crs_J_2_t_2 = crs_J_2_t + crs_link2_centre_of_mass_y*crs_link2_centre_of_mass_y
             + crs_link2_centre_of_mass_z*crs_link2_centre_of_mass_z;
-        const real crs_J_2_in_spec1_xx = crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t -
-            crs_J_2_t_2);
+        KEEP_OF_LEG(crs_J_2_in_spec1_xx, crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t -
+            crs_J_2_t_2));
         /* (crs-rho_tip_3) connection point to the centre of mass of link 3 */
         const real crs_rho_tip_3_in_spec3_x = crs_link3_centre_of_mass_x -
             crs_platform_joint_offset_x;
         /* (crs-h_3) first moment of link 3 about the connection point */
-        const real crs_h_3_in_spec3_x = crs_link3_mass*crs_rho_tip_3_in_spec3_x;
-        const real crs_h_3_in_spec3_y = crs_link3_centre_of_mass_y*crs_link3_mass;
-        const real crs_h_3_in_spec3_z = crs_link3_centre_of_mass_z*crs_link3_mass;
+        KEEP_OF_LEG(crs_h_3_in_spec3_x, crs_link3_mass*crs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(crs_h_3_in_spec3_y, crs_link3_centre_of_mass_y*crs_link3_mass);
+        KEEP_OF_LEG(crs_h_3_in_spec3_z, crs_link3_centre_of_mass_z*crs_link3_mass);
         /* (crs-J_3) inertia tensor of link 3 about the connection point */
         const real crs_J_3_t = crs_rho_tip_3_in_spec3_x*crs_rho_tip_3_in_spec3_x;
         const real crs_J_3_t_2 = crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_y;
         const real crs_J_3_t_3 = crs_link3_centre_of_mass_z*crs_link3_centre_of_mass_z;
         const real crs_J_3_t_4 = crs_J_3_t + crs_J_3_t_2 + crs_J_3_t_3;
-        const real crs_J_3_in_spec3_xx = crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t -
-            crs_J_3_t_4);
-        const real crs_J_3_in_spec3_xy = crs_link3_inertia_xy -
-            crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_in_spec3_x;
-        const real crs_J_3_in_spec3_xz = crs_link3_inertia_xz -
-            crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_in_spec3_x;
-        const real crs_J_3_in_spec3_yy = crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 -
-            crs_J_3_t_4);
-        const real crs_J_3_in_spec3_yz = crs_link3_inertia_yz -
-            crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass;
-        const real crs_J_3_in_spec3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 -
-            crs_J_3_t_4);
+        KEEP_OF_LEG(crs_J_3_in_spec3_xx, crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t -
+            crs_J_3_t_4));
+        KEEP_OF_LEG(crs_J_3_in_spec3_xy, crs_link3_inertia_xy -
+            crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(crs_J_3_in_spec3_xz, crs_link3_inertia_xz -
+            crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(crs_J_3_in_spec3_yy, crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 -
+            crs_J_3_t_4));
+        KEEP_OF_LEG(crs_J_3_in_spec3_yz, crs_link3_inertia_yz -
+            crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass);
+        KEEP_OF_LEG(crs_J_3_in_spec3_zz, crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 -
+            crs_J_3_t_4));
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_crs_size_t = 1/crs_size_t;
+        KEEP_OF_LEG(inv_crs_size_t, 1/crs_size_t);
         /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real crs_g_in_axes1_z = crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y +
-            crs_base_frame_zx*gravity_z;
+        KEEP_OF_LEG(crs_g_in_axes1_z, crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y +
+            crs_base_frame_zx*gravity_z);
         /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real crs_acc_3_t = crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y +
-            crs_base_frame_zy*gravity_z;
-        const real crs_acc_3_t_2 = crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y +
-            crs_base_frame_zz*gravity_z;
+        KEEP_OF_LEG(crs_acc_3_t, crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y +
+            crs_base_frame_zy*gravity_z);
+        KEEP_OF_LEG(crs_acc_3_t_2, crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y +
+            crs_base_frame_zz*gravity_z);
         /* (crs-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real crs_Sigma_3_t = crs_J_3_in_spec3_xx + crs_J_3_in_spec3_yy +
             crs_J_3_in_spec3_zz;
         const real crs_Sigma_3_t_2 = R(0.5)*crs_Sigma_3_t;
-        const real crs_Sigma_3_in_axes3_xx = crs_Sigma_3_t_2 - crs_J_3_in_spec3_xx;
-        const real crs_Sigma_3_in_axes3_yy = crs_Sigma_3_t_2 - crs_J_3_in_spec3_yy;
-        const real crs_Sigma_3_in_axes3_zz = crs_Sigma_3_t_2 - crs_J_3_in_spec3_zz;
+        KEEP_OF_LEG(crs_Sigma_3_in_axes3_xx, crs_Sigma_3_t_2 - crs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(crs_Sigma_3_in_axes3_yy, crs_Sigma_3_t_2 - crs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(crs_Sigma_3_in_axes3_zz, crs_Sigma_3_t_2 - crs_J_3_in_spec3_zz);
         /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_crs_size_t_2 = 1/crs_size_t_2;
-        const real inv_crs_size = 1/crs_size;
+        KEEP_OF_LEG(inv_crs_size_t_2, 1/crs_size_t_2);
+        KEEP_OF_LEG(inv_crs_size, 1/crs_size);
         /* (h_star) */
         const real crs_h_star_t = crs_link3_mass*crs_platform_point_x;
         const real crs_h_star_t_2 = crs_link3_mass*crs_platform_point_y;
@@ -784,131 +798,63 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real crs_J_star_t_9 = crs_link3_mass*crs_platform_point_y*crs_platform_point_z;
         const real crs_J_star_t_10 = crs_link3_mass*(crs_J_star_t_3 - crs_J_star_t_4);
         /* (potential) potential energy */
-        const real crs_potential_t = crs_base_frame_xy*crs_base_point_x +
-            crs_base_frame_yy*crs_base_point_y + crs_base_frame_zy*crs_base_point_z;
-        const real crs_potential_t_2 = crs_base_frame_xz*crs_base_point_x +
-            crs_base_frame_yz*crs_base_point_y + crs_base_frame_zz*crs_base_point_z;
-        const real crs_b_in_axes1_z = crs_base_frame_xx*crs_base_point_x +
-            crs_base_frame_yx*crs_base_point_y + crs_base_frame_zx*crs_base_point_z;
-        KEEP_OF_LEG(crs_J_2_in_spec1_xx);
-        KEEP_OF_LEG(crs_J_3_in_spec3_xx);
-        KEEP_OF_LEG(crs_J_3_in_spec3_xy);
-        KEEP_OF_LEG(crs_J_3_in_spec3_xz);
-        KEEP_OF_LEG(crs_J_3_in_spec3_yy);
-        KEEP_OF_LEG(crs_J_3_in_spec3_yz);
-        KEEP_OF_LEG(crs_J_3_in_spec3_zz);
-        KEEP_OF_LEG(crs_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(crs_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(crs_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(crs_acc_3_t);
-        KEEP_OF_LEG(crs_acc_3_t_2);
-        KEEP_OF_LEG(crs_b_in_axes1_z);
-        KEEP_OF_LEG(crs_base_frame_xx);
-        KEEP_OF_LEG(crs_base_frame_xy);
-        KEEP_OF_LEG(crs_base_frame_xz);
-        KEEP_OF_LEG(crs_base_frame_yx);
-        KEEP_OF_LEG(crs_base_frame_yy);
-        KEEP_OF_LEG(crs_base_frame_yz);
-        KEEP_OF_LEG(crs_base_frame_zx);
-        KEEP_OF_LEG(crs_base_frame_zy);
-        KEEP_OF_LEG(crs_base_frame_zz);
-        KEEP_OF_LEG(crs_base_point_x);
-        KEEP_OF_LEG(crs_base_point_y);
-        KEEP_OF_LEG(crs_base_point_z);
-        KEEP_OF_LEG(crs_branch_1);
-        KEEP_OF_LEG(crs_branch_2);
-        KEEP_OF_LEG(crs_g_in_axes1_z);
-        KEEP_OF_LEG(crs_h_2_in_spec1_x);
-        KEEP_OF_LEG(crs_h_2_in_spec1_y);
-        KEEP_OF_LEG(crs_h_2_in_spec1_z);
-        KEEP_OF_LEG(crs_h_3_in_spec3_x);
-        KEEP_OF_LEG(crs_h_3_in_spec3_y);
-        KEEP_OF_LEG(crs_h_3_in_spec3_z);
-        KEEP_OF_LEG(crs_joint3_offset_x);
-        KEEP_OF_LEG(crs_link2_mass);
-        KEEP_OF_LEG(crs_link3_mass);
-        KEEP_OF_LEG(crs_platform_joint_offset_x);
-        KEEP_OF_LEG(crs_platform_point_x);
-        KEEP_OF_LEG(crs_platform_point_y);
-        KEEP_OF_LEG(crs_platform_point_z);
-        KEEP_OF_LEG(crs_potential_t);
-        KEEP_OF_LEG(crs_potential_t_2);
-        KEEP_OF_LEG(crs_size);
-        KEEP_OF_LEG(crs_size_t);
-        KEEP_OF_LEG(crs_size_t_2);
-        KEEP_OF_LEG(inv_crs_size);
-        KEEP_OF_LEG(inv_crs_size_t);
-        KEEP_OF_LEG(inv_crs_size_t_2);
-        m_star_of_legs += leg < LEGS_OF_crs ? crs_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_crs ? crs_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_crs ? crs_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_crs ? crs_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_crs ? -crs_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_crs ? -crs_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_crs ? -crs_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_crs ? -crs_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_crs ? -crs_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_crs ? -crs_J_star_t_10 : 0;
-        b_c_crs_in_platform_x += leg < LEGS_OF_crs ? crs_platform_point_x : 0;
-        b_c_crs_in_platform_y += leg < LEGS_OF_crs ? crs_platform_point_y : 0;
-        b_c_crs_in_platform_z += leg < LEGS_OF_crs ? crs_platform_point_z : 0;
-        legs_size_crs += leg < LEGS_OF_crs ? crs_size_t_2 : 0;
+        KEEP_OF_LEG(crs_potential_t, crs_base_frame_xy*crs_base_point_x +
+            crs_base_frame_yy*crs_base_point_y + crs_base_frame_zy*crs_base_point_z);
+        KEEP_OF_LEG(crs_potential_t_2, crs_base_frame_xz*crs_base_point_x +
+            crs_base_frame_yz*crs_base_point_y + crs_base_frame_zz*crs_base_point_z);
+        KEEP_OF_LEG(crs_b_in_axes1_z, crs_base_frame_xx*crs_base_point_x +
+            crs_base_frame_yx*crs_base_point_y + crs_base_frame_zx*crs_base_point_z);
+        if (leg < LEGS_OF_crs) {
+            m_star_of_legs += crs_link3_mass;
+            h_star_in_platform_x_of_legs += crs_h_star_t;
+            h_star_in_platform_y_of_legs += crs_h_star_t_2;
+            h_star_in_platform_z_of_legs += crs_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -crs_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -crs_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -crs_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -crs_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -crs_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -crs_J_star_t_10;
+            b_c_crs_in_platform_x += crs_platform_point_x;
+            b_c_crs_in_platform_y += crs_platform_point_y;
+            b_c_crs_in_platform_z += crs_platform_point_z;
+            legs_size_crs += crs_size_t_2;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_crs_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_crs_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_crs_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_crs_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_crs_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_crs_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_crs)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_crs)*spread_t);
     return OK;
 }
 
@@ -1522,14 +1468,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1568,7 +1514,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1658,11 +1604,11 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->crs_q_2 = crs_from_centre_2_in_axes1_z + m->crs_branch_2[i]*root(v->crs_disc_2);
     /* (crs-x_3) from the origin of joint 3 to the connection point */
     const real crs_x_3_in_axes1_z = crs_S_in_turn1_z - m->crs_joint3_offset_x[i] - v->crs_q_2;
-    /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
+    /* (crs-c_3) */
     v->crs_c_3 = m->crs_platform_joint_offset_x[i]*crs_x_3_in_axes1_z*m->inv_crs_size_t[i];
     /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
     v->crs_s_3 = m->crs_platform_joint_offset_x[i]*crs_root_1*m->inv_crs_size_t[i];
-    /* (crs-h_3) first moment of link 3 about the connection point */
+    /* (crs-h_3) */
     v->crs_h_3_in_axes1_x = m->crs_h_3_in_spec3_x[i]*v->crs_s_3 +
         v->crs_c_3*m->crs_h_3_in_spec3_y[i];
     /* (crs-r_1) from joint 1 to the connection point, along the links */
@@ -1709,7 +1655,7 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_crs_axes3_y*v->crs_w_2_in_axes3_y;
     v->crs_w_2_z = v->axis_x_crs_axes3_z*v->crs_w_2_in_axes3_x +
         v->axis_y_crs_axes3_z*v->crs_w_2_in_axes3_y;
-    /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (crs-acc_3) */
     v->crs_g_in_axes1_x = m->crs_acc_3_t[i]*v->crs_c_1 + m->crs_acc_3_t_2[i]*v->crs_s_1;
     v->crs_g_in_axes1_y = m->crs_acc_3_t_2[i]*v->crs_c_1 - m->crs_acc_3_t[i]*v->crs_s_1;
     v->crs_g_in_axes3_x = v->crs_g_in_axes1_x*v->crs_s_3 + v->crs_c_3*m->crs_g_in_axes1_z[i];
@@ -2042,15 +1988,15 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
     const real crs_B_3_in_axes3_yx = v->crs_W_3_in_axes3_xy + v->crs_qdd_2_t;
     const real crs_B_3_in_axes3_zx = v->crs_W_3_in_axes3_xz - crs_alpha_3_in_axes3_y;
     const real crs_B_3_in_axes3_zy = v->crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
-    /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (crs-acc_2) */
     const real crs_acc_2_in_axes1_z = v->crs_qdd_2 - m->crs_g_in_axes1_z[i];
     /* (crs-f_2) inertia force of link 2 less its weight */
     const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*m->crs_link2_mass[i];
-    /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (crs-acc_3) */
     v->crs_acc_3_in_axes3_x = v->crs_S_ddot_in_axes3_x - v->crs_g_in_axes3_x;
     v->crs_acc_3_in_axes3_y = v->crs_S_ddot_in_axes3_y - v->crs_g_in_axes3_y;
     v->crs_acc_3_in_axes3_z = v->crs_S_ddot_in_axes3_z - v->crs_g_in_axes1_y;
-    /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (crs-mu_3) */
     const real crs_mu_3_in_axes3_x = v->crs_acc_3_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
         v->crs_acc_3_in_axes3_y*m->crs_h_3_in_spec3_z[i] + v->crs_mu_3_t_4 +
         m->crs_Sigma_3_in_axes3_zz[i]*crs_alpha_1_in_axes3_x +
@@ -2069,14 +2015,13 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
         m->crs_J_3_in_spec3_yz[i]*crs_alpha_1_in_axes3_y +
         crs_B_3_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] -
         crs_B_3_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i];
-    /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (crs-mu_1) */
     const real crs_mu_1_in_axes1_z = m->crs_J_2_in_spec1_xx[i]*v->crs_qdd_1 - v->crs_mu_1_t;
     /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + v->crs_c_3*crs_mu_3_in_axes3_x -
         crs_mu_3_in_axes3_y*v->crs_s_3;
-    /* (crs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (crs-c) */
     const real crs_c_t_4 = v->inv_crs_v_3_in_axes1_x*(crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x
         + crs_mu_3_in_axes3_z);
     v->crs_c_in_axes3_x = v->crs_c_t - crs_alpha_1_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
@@ -2144,7 +2089,7 @@ INLINE void any_sums_crs(size_t k, size_t count, int add, const values_crs *v, r
     gather(&terms[3*count + k], add, v->crs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->crs_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->crs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->crs_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, v->crs_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, v->crs_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2153,7 +2098,7 @@ INLINE void any_sums_crs(size_t k, size_t count, int add, const values_crs *v, r
     gather(&terms[11*count + k], add, v->crs_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->crs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->crs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->crs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->crs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->crs_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2168,7 +2113,7 @@ INLINE void any_sums_crs_2(size_t k, size_t count, int add, const values_crs *v,
     gather(&terms[0*count + k], add, v->crs_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->crs_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->crs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->crs_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->crs_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->crs_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2176,19 +2121,19 @@ INLINE void any_sums_crs_2(size_t k, size_t count, int add, const values_crs *v,
 
 INLINE void any_entries_crs(size_t k, size_t count, const values_crs *v, real *o)
 {
-    /* (crs-w_1) reciprocal vector 1 */
+    /* (crs-w_1) */
     o[0*count + k] = v->crs_w_1_x;
     o[1*count + k] = v->crs_w_1_y;
     o[2*count + k] = v->crs_w_1_z;
-    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
+    /* (crs-H_a_1) */
     o[3*count + k] = v->crs_H_a_1_x;
     o[4*count + k] = v->crs_H_a_1_y;
     o[5*count + k] = v->crs_H_a_1_z;
-    /* (crs-w_2) reciprocal vector 2 */
+    /* (crs-w_2) */
     o[6*count + k] = v->crs_w_2_x;
     o[7*count + k] = v->crs_w_2_y;
     o[8*count + k] = v->crs_w_2_z;
-    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
+    /* (crs-H_a_2) */
     o[9*count + k] = v->crs_H_a_2_x;
     o[10*count + k] = v->crs_H_a_2_y;
     o[11*count + k] = v->crs_H_a_2_z;
@@ -2199,6 +2144,136 @@ INLINE void any_singular_crs(const prepared *m, size_t i, size_t k, const values
     o[k] = UNLESS(magnitude(v->crs_rho2_1) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) +
         UNLESS(magnitude(v->crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
         UNLESS(magnitude(v->crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_crs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2286,132 +2361,15 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)26)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_crs[SUMS_OF_dynamics*LEGS(LEGS_OF_crs)] CLEARED, o_crs[15*LEGS(LEGS_OF_crs)] CLEARED;
@@ -2474,103 +2432,13 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)20)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_crs[SUMS_OF_M*LEGS(LEGS_OF_crs)] CLEARED, o_crs[2*LEGS(LEGS_OF_crs)] CLEARED;
@@ -2589,7 +2457,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2642,35 +2510,7 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2696,7 +2536,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2740,7 +2580,7 @@ INLINE void H_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_crs[15*LEGS(LEGS_OF_crs)] CLEARED;
@@ -2852,19 +2692,18 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_crs_V_X(m, w, i, j, V, &v);
     stage_crs_A_V_X(w, j, s, A, &v);
     stage_crs_legs_required(m, i, &v);
-    /* (crs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (crs-c) */
     const real crs_c_x = v.axis_x_crs_axes3_x*v.crs_c_in_axes3_x +
         v.axis_y_crs_axes3_x*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_x*v.crs_c_in_axes3_z;
     const real crs_c_y = v.axis_x_crs_axes3_y*v.crs_c_in_axes3_x +
         v.axis_y_crs_axes3_y*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_y*v.crs_c_in_axes3_z;
     const real crs_c_z = v.axis_x_crs_axes3_z*v.crs_c_in_axes3_x +
         v.axis_y_crs_axes3_z*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_z*v.crs_c_in_axes3_z;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real crs_R_a_t = crs_c_y*v.crs_q_z - crs_c_z*v.crs_q_y;
     const real crs_R_a_t_2 = crs_c_z*v.crs_q_x - crs_c_x*v.crs_q_z;
     const real crs_R_a_t_3 = crs_c_x*v.crs_q_y - crs_c_y*v.crs_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, crs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, crs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, crs_c_z);  /* R_t_z_of_legs */
@@ -2898,7 +2737,7 @@ INLINE void required_place_crs(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2908,7 +2747,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2955,8 +2794,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_crs[14*LANES];
@@ -2995,7 +2834,7 @@ INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t i, s
     const real crs_q_3 = angle(v.crs_s_3, v.crs_c_3);
     /* (crs-q_1) */
     o[0*count + k] = crs_q_1;
-    /* (crs-q_2) displacement of joint 2 */
+    /* (crs-q_2) */
     o[1*count + k] = v.crs_q_2;
     /* (crs-q_3) */
     o[2*count + k] = crs_q_3;
@@ -3017,7 +2856,8 @@ INLINE void inverse_kinematics_place_crs(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
@@ -3061,9 +2901,9 @@ INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t i, size_t j
     values_crs v;
     stage_crs_X(m, w, i, j, s, X, &v);
     stage_crs_V_X(m, w, i, j, V, &v);
-    /* (crs-qd_1) rate of joint 1 */
+    /* (crs-qd_1) */
     o[0*count + k] = v.crs_qd_1;
-    /* (crs-qd_2) rate of joint 2 */
+    /* (crs-qd_2) */
     o[1*count + k] = v.crs_qd_2;
     /* (crs-qd_3) rate of joint 3 */
     o[2*count + k] = v.crs_qd_2_t;
@@ -3085,8 +2925,8 @@ INLINE void joint_rates_place_crs(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
@@ -3131,9 +2971,9 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, 
     stage_crs_X(m, w, i, j, s, X, &v);
     stage_crs_V_X(m, w, i, j, V, &v);
     stage_crs_A_V_X(w, j, s, A, &v);
-    /* (crs-qdd_1) acceleration of joint 1 */
+    /* (crs-qdd_1) */
     o[0*count + k] = v.crs_qdd_1;
-    /* (crs-qdd_2) acceleration of joint 2 */
+    /* (crs-qdd_2) */
     o[1*count + k] = v.crs_qdd_2;
     /* (crs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.crs_qdd_2_t;
@@ -3155,8 +2995,8 @@ INLINE void joint_accelerations_place_crs(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
@@ -3222,11 +3062,11 @@ INLINE void legs_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = crs_c_true_x;
     o[1*count + k] = crs_c_true_y;
     o[2*count + k] = crs_c_true_z;
-    /* (crs-w_1) reciprocal vector 1 */
+    /* (crs-w_1) */
     o[3*count + k] = v.crs_w_1_x;
     o[4*count + k] = v.crs_w_1_y;
     o[5*count + k] = v.crs_w_1_z;
-    /* (crs-w_2) reciprocal vector 2 */
+    /* (crs-w_2) */
     o[6*count + k] = v.crs_w_2_x;
     o[7*count + k] = v.crs_w_2_y;
     o[8*count + k] = v.crs_w_2_z;
@@ -3274,7 +3114,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3354,7 +3194,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3365,8 +3205,7 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_crs v;
     stage_crs_X(m, w, i, j, s, X, &v);
-    /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (crs-G) */
     const real crs_pivot_size = magnitude(v.crs_rho2_1);
     const real crs_pivot_size_2 = magnitude(v.crs_v_1_in_axes3_z);
     const real crs_pivot_size_3 = magnitude(v.crs_v_3_in_axes1_x);
@@ -3417,7 +3256,7 @@ INLINE void condition_place_crs(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_crs = sums[0*w + k];
     const real spread_ = root(spread_crs)*m->spread_t;
     /* (spread) */
@@ -3428,8 +3267,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_crs[SUMS_OF_condition*LEGS(LEGS_OF_crs)] CLEARED, o_crs[17*LEGS(LEGS_OF_crs)] CLEARED;
@@ -3450,7 +3289,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int hybrid_3crs_M(const prepared *m, const real *X, real *M_out)
+NARROW int hybrid_3crs_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3473,7 +3312,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int hybrid_3crs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int hybrid_3crs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3497,7 +3336,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int hybrid_3crs_H(const prepared *m, const real *X, real *H_out)
+NARROW int hybrid_3crs_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3520,7 +3359,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int hybrid_3crs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3crs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3543,7 +3382,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int hybrid_3crs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int hybrid_3crs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3568,8 +3407,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int hybrid_3crs_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int hybrid_3crs_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3595,7 +3434,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int hybrid_3crs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int hybrid_3crs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     status_flags why;
@@ -3801,8 +3640,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {1, 4, 5, 3, 0, 2};
 static const real sizes_tau[] = {4.0, 0.25, 1.0, 0.25, 4.0, 1.0};
 
-int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -3851,8 +3690,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 
-int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out)
+NARROW int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -3908,8 +3747,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int hybrid_3crs_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int hybrid_3crs_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -3922,8 +3761,8 @@ int hybrid_3crs_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
@@ -3941,8 +3780,8 @@ int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int hybrid_3crs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int hybrid_3crs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -3960,7 +3799,8 @@ int hybrid_3crs_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int hybrid_3crs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int hybrid_3crs_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -3993,7 +3833,7 @@ int hybrid_3crs_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int hybrid_3crs_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int hybrid_3crs_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -4027,8 +3867,8 @@ int hybrid_3crs_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int hybrid_3crs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int hybrid_3crs_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -4061,7 +3901,7 @@ int hybrid_3crs_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {0, 2, 4};
@@ -4082,7 +3922,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4139,8 +3979,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int hybrid_3crs_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int hybrid_3crs_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4150,7 +3990,7 @@ int hybrid_3crs_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4166,7 +4006,8 @@ int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4177,7 +4018,7 @@ int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4193,7 +4034,7 @@ int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4207,7 +4048,7 @@ int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -4218,7 +4059,8 @@ int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -4229,8 +4071,8 @@ int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -4241,8 +4083,8 @@ int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int hybrid_3crs_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int hybrid_3crs_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4254,7 +4096,7 @@ int hybrid_3crs_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int hybrid_3crs_rotation(const real *X, real *R_out)
+NARROW int hybrid_3crs_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -4265,19 +4107,18 @@ int hybrid_3crs_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int hybrid_3crs_pose(const real *t, const real *R, real *X_out)
+NARROW int hybrid_3crs_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3crs_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int hybrid_3crs_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -4290,19 +4131,18 @@ int hybrid_3crs_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int hybrid_3crs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int hybrid_3crs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -4318,7 +4158,7 @@ int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
+NARROW int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -4334,7 +4174,7 @@ int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int hybrid_3crs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int hybrid_3crs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};

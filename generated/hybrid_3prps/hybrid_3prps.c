@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HYBRID_3PRPS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3PRPS_LANES >= 4 && VECTORS_OF(HYBRID_3PRPS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +293,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +308,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +414,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -612,8 +629,9 @@ static int acceptable(const hybrid_3prps_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *model)
 {
@@ -634,9 +652,9 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     real b_c_prps_in_platform_x = 0;
     real b_c_prps_in_platform_y = 0;
     real b_c_prps_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -663,67 +681,62 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.299038105676658)*spread_t;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(legs_size);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.299038105676658)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_prps); ++leg) {
         const size_t own = leg < LEGS_OF_prps ? leg : 0;
-        const real prps_base_point_x = params->prps_base_point[own][0];
-        const real prps_base_point_y = params->prps_base_point[own][1];
-        const real prps_base_point_z = params->prps_base_point[own][2];
-        const real prps_base_frame_xx = params->prps_base_frame[own][0][0];
-        const real prps_base_frame_xy = params->prps_base_frame[own][0][1];
-        const real prps_base_frame_xz = params->prps_base_frame[own][0][2];
-        const real prps_base_frame_yx = params->prps_base_frame[own][1][0];
-        const real prps_base_frame_yy = params->prps_base_frame[own][1][1];
-        const real prps_base_frame_yz = params->prps_base_frame[own][1][2];
-        const real prps_base_frame_zx = params->prps_base_frame[own][2][0];
-        const real prps_base_frame_zy = params->prps_base_frame[own][2][1];
-        const real prps_base_frame_zz = params->prps_base_frame[own][2][2];
-        const real prps_platform_point_x = params->prps_platform_point[own][0];
-        const real prps_platform_point_y = params->prps_platform_point[own][1];
-        const real prps_platform_point_z = params->prps_platform_point[own][2];
-        const real prps_link1_mass = params->prps_link1_mass[own];
+        KEEP_OF_LEG(prps_base_point_x, params->prps_base_point[own][0]);
+        KEEP_OF_LEG(prps_base_point_y, params->prps_base_point[own][1]);
+        KEEP_OF_LEG(prps_base_point_z, params->prps_base_point[own][2]);
+        KEEP_OF_LEG(prps_base_frame_xx, params->prps_base_frame[own][0][0]);
+        KEEP_OF_LEG(prps_base_frame_xy, params->prps_base_frame[own][0][1]);
+        KEEP_OF_LEG(prps_base_frame_xz, params->prps_base_frame[own][0][2]);
+        KEEP_OF_LEG(prps_base_frame_yx, params->prps_base_frame[own][1][0]);
+        KEEP_OF_LEG(prps_base_frame_yy, params->prps_base_frame[own][1][1]);
+        KEEP_OF_LEG(prps_base_frame_yz, params->prps_base_frame[own][1][2]);
+        KEEP_OF_LEG(prps_base_frame_zx, params->prps_base_frame[own][2][0]);
+        KEEP_OF_LEG(prps_base_frame_zy, params->prps_base_frame[own][2][1]);
+        KEEP_OF_LEG(prps_base_frame_zz, params->prps_base_frame[own][2][2]);
+        KEEP_OF_LEG(prps_platform_point_x, params->prps_platform_point[own][0]);
+        KEEP_OF_LEG(prps_platform_point_y, params->prps_platform_point[own][1]);
+        KEEP_OF_LEG(prps_platform_point_z, params->prps_platform_point[own][2]);
+        KEEP_OF_LEG(prps_link1_mass, params->prps_link1_mass[own]);
         const real prps_link1_centre_of_mass_x = params->prps_link1_centre_of_mass[own][0];
         const real prps_link1_centre_of_mass_y = params->prps_link1_centre_of_mass[own][1];
         const real prps_link1_centre_of_mass_z = params->prps_link1_centre_of_mass[own][2];
-        const real prps_link2_mass = params->prps_link2_mass[own];
+        KEEP_OF_LEG(prps_link2_mass, params->prps_link2_mass[own]);
         const real prps_link2_centre_of_mass_x = params->prps_link2_centre_of_mass[own][0];
         const real prps_link2_centre_of_mass_y = params->prps_link2_centre_of_mass[own][1];
         const real prps_link2_centre_of_mass_z = params->prps_link2_centre_of_mass[own][2];
         const real prps_link2_inertia_zz = params->prps_link2_inertia[own][2][2];
-        const real prps_link3_mass = params->prps_link3_mass[own];
+        KEEP_OF_LEG(prps_link3_mass, params->prps_link3_mass[own]);
         const real prps_link3_centre_of_mass_x = params->prps_link3_centre_of_mass[own][0];
         const real prps_link3_centre_of_mass_y = params->prps_link3_centre_of_mass[own][1];
         const real prps_link3_centre_of_mass_z = params->prps_link3_centre_of_mass[own][2];
         const real prps_link3_inertia_zz = params->prps_link3_inertia[own][2][2];
         static const signed char signs_prps_branch_2[] = {1, 1, 1};
-        const real prps_branch_2 = signs_prps_branch_2[own];
+        KEEP_OF_LEG(prps_branch_2, signs_prps_branch_2[own]);
         /* (prps-h_1) first moment of link 1 about the origin of link 1 */
-        const real prps_h_1_in_spec0_x = prps_link1_centre_of_mass_x*prps_link1_mass;
-        const real prps_h_1_in_spec0_y = prps_link1_centre_of_mass_y*prps_link1_mass;
-        const real prps_h_1_in_spec0_z = prps_link1_centre_of_mass_z*prps_link1_mass;
+        KEEP_OF_LEG(prps_h_1_in_spec0_x, prps_link1_centre_of_mass_x*prps_link1_mass);
+        KEEP_OF_LEG(prps_h_1_in_spec0_y, prps_link1_centre_of_mass_y*prps_link1_mass);
+        KEEP_OF_LEG(prps_h_1_in_spec0_z, prps_link1_centre_of_mass_z*prps_link1_mass);
         /* (prps-h_2) first moment of link 2 about the origin of link 2 */
-        const real prps_h_2_in_spec2_x = prps_link2_centre_of_mass_x*prps_link2_mass;
-        const real prps_h_2_in_spec2_y = prps_link2_centre_of_mass_y*prps_link2_mass;
-        const real prps_h_2_in_spec2_z = prps_link2_centre_of_mass_z*prps_link2_mass;
+        KEEP_OF_LEG(prps_h_2_in_spec2_x, prps_link2_centre_of_mass_x*prps_link2_mass);
+        KEEP_OF_LEG(prps_h_2_in_spec2_y, prps_link2_centre_of_mass_y*prps_link2_mass);
+        KEEP_OF_LEG(prps_h_2_in_spec2_z, prps_link2_centre_of_mass_z*prps_link2_mass);
         /* (prps-h_3) first moment of link 3 about the connection point */
-        const real prps_h_3_in_spec2_x = prps_link3_centre_of_mass_x*prps_link3_mass;
-        const real prps_h_3_in_spec2_y = prps_link3_centre_of_mass_y*prps_link3_mass;
-        const real prps_h_3_in_spec2_z = prps_link3_centre_of_mass_z*prps_link3_mass;
+        KEEP_OF_LEG(prps_h_3_in_spec2_x, prps_link3_centre_of_mass_x*prps_link3_mass);
+        KEEP_OF_LEG(prps_h_3_in_spec2_y, prps_link3_centre_of_mass_y*prps_link3_mass);
+        KEEP_OF_LEG(prps_h_3_in_spec2_z, prps_link3_centre_of_mass_z*prps_link3_mass);
         /* (prps-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prps_g_in_axes0_z = gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz
-            + gravity_z*prps_base_frame_zz;
+        KEEP_OF_LEG(prps_g_in_axes0_z, gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz
+            + gravity_z*prps_base_frame_zz);
         /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real prps_g_in_axes0_x = gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx
-            + gravity_z*prps_base_frame_zx;
-        const real prps_g_in_axes0_y = gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy
-            + gravity_z*prps_base_frame_zy;
+        KEEP_OF_LEG(prps_g_in_axes0_x, gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx
+            + gravity_z*prps_base_frame_zx);
+        KEEP_OF_LEG(prps_g_in_axes0_y, gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy
+            + gravity_z*prps_base_frame_zy);
         /* (prps-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
         const real prps_Jc_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z;
@@ -734,24 +747,24 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_Jc_2_t_4 = prps_Jc_2_t_3 +
             prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
             prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y;
-        const real prps_Jc_2_in_axes2_zz = prps_link2_inertia_zz + prps_link3_inertia_zz -
+        KEEP_OF_LEG(prps_Jc_2_in_axes2_zz, prps_link2_inertia_zz + prps_link3_inertia_zz -
             prps_link2_mass*(prps_Jc_2_t - prps_Jc_2_t_2) - prps_link3_mass*(prps_Jc_2_t_3 -
-            prps_Jc_2_t_4);
+            prps_Jc_2_t_4));
         /* (prps-P_c_1) force that accelerates joint 1, per unit */
-        const real prps_P_c_1_in_axes0_z = prps_link1_mass + prps_link2_mass;
+        KEEP_OF_LEG(prps_P_c_1_in_axes0_z, prps_link1_mass + prps_link2_mass);
         /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real prps_Q_t = R(0.5)*prps_P_c_1_in_axes0_z;
         const real prps_Q_t_2 = prps_Q_t*prps_base_frame_xz;
         const real prps_Q_t_3 = prps_Q_t*prps_base_frame_yz;
         const real prps_Q_t_4 = prps_Q_t*prps_base_frame_zz;
-        const real prps_Q_t_5 = prps_Q_t_2*prps_base_frame_xz;
-        const real prps_Q_t_6 = prps_Q_t_3*prps_base_frame_yz;
-        const real prps_Q_t_7 = prps_Q_t_3*prps_base_frame_xz;
-        const real prps_Q_t_8 = prps_Q_t_2*prps_base_frame_yz;
-        const real prps_Q_t_9 = prps_Q_t_4*prps_base_frame_xz;
-        const real prps_Q_t_10 = prps_Q_t_2*prps_base_frame_zz;
-        const real prps_Q_t_11 = prps_Q_t_4*prps_base_frame_yz;
-        const real prps_Q_t_12 = prps_Q_t_3*prps_base_frame_zz;
+        KEEP_OF_LEG(prps_Q_t_5, prps_Q_t_2*prps_base_frame_xz);
+        KEEP_OF_LEG(prps_Q_t_6, prps_Q_t_3*prps_base_frame_yz);
+        KEEP_OF_LEG(prps_Q_t_7, prps_Q_t_3*prps_base_frame_xz);
+        KEEP_OF_LEG(prps_Q_t_8, prps_Q_t_2*prps_base_frame_yz);
+        KEEP_OF_LEG(prps_Q_t_9, prps_Q_t_4*prps_base_frame_xz);
+        KEEP_OF_LEG(prps_Q_t_10, prps_Q_t_2*prps_base_frame_zz);
+        KEEP_OF_LEG(prps_Q_t_11, prps_Q_t_4*prps_base_frame_yz);
+        KEEP_OF_LEG(prps_Q_t_12, prps_Q_t_3*prps_base_frame_zz);
         /* (h_star) */
         const real prps_h_star_t = prps_link3_mass*prps_platform_point_x;
         const real prps_h_star_t_2 = prps_link3_mass*prps_platform_point_y;
@@ -772,124 +785,60 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
             prps_base_frame_yx*prps_base_point_y + prps_base_frame_zx*prps_base_point_z;
         const real prps_b_in_axes0_y = prps_base_frame_xy*prps_base_point_x +
             prps_base_frame_yy*prps_base_point_y + prps_base_frame_zy*prps_base_point_z;
-        const real prps_b_in_axes0_z = prps_base_frame_xz*prps_base_point_x +
-            prps_base_frame_yz*prps_base_point_y + prps_base_frame_zz*prps_base_point_z;
-        const real prps_potential_t = prps_b_in_axes0_x*prps_link1_mass;
-        const real prps_potential_t_2 = prps_b_in_axes0_y*prps_link1_mass;
-        const real prps_potential_t_3 = prps_b_in_axes0_x*prps_link2_mass;
-        const real prps_potential_t_4 = prps_b_in_axes0_y*prps_link2_mass;
-        KEEP_OF_LEG(prps_Jc_2_in_axes2_zz);
-        KEEP_OF_LEG(prps_P_c_1_in_axes0_z);
-        KEEP_OF_LEG(prps_Q_t_10);
-        KEEP_OF_LEG(prps_Q_t_11);
-        KEEP_OF_LEG(prps_Q_t_12);
-        KEEP_OF_LEG(prps_Q_t_5);
-        KEEP_OF_LEG(prps_Q_t_6);
-        KEEP_OF_LEG(prps_Q_t_7);
-        KEEP_OF_LEG(prps_Q_t_8);
-        KEEP_OF_LEG(prps_Q_t_9);
-        KEEP_OF_LEG(prps_b_in_axes0_z);
-        KEEP_OF_LEG(prps_base_frame_xx);
-        KEEP_OF_LEG(prps_base_frame_xy);
-        KEEP_OF_LEG(prps_base_frame_xz);
-        KEEP_OF_LEG(prps_base_frame_yx);
-        KEEP_OF_LEG(prps_base_frame_yy);
-        KEEP_OF_LEG(prps_base_frame_yz);
-        KEEP_OF_LEG(prps_base_frame_zx);
-        KEEP_OF_LEG(prps_base_frame_zy);
-        KEEP_OF_LEG(prps_base_frame_zz);
-        KEEP_OF_LEG(prps_base_point_x);
-        KEEP_OF_LEG(prps_base_point_y);
-        KEEP_OF_LEG(prps_base_point_z);
-        KEEP_OF_LEG(prps_branch_2);
-        KEEP_OF_LEG(prps_g_in_axes0_x);
-        KEEP_OF_LEG(prps_g_in_axes0_y);
-        KEEP_OF_LEG(prps_g_in_axes0_z);
-        KEEP_OF_LEG(prps_h_1_in_spec0_x);
-        KEEP_OF_LEG(prps_h_1_in_spec0_y);
-        KEEP_OF_LEG(prps_h_1_in_spec0_z);
-        KEEP_OF_LEG(prps_h_2_in_spec2_x);
-        KEEP_OF_LEG(prps_h_2_in_spec2_y);
-        KEEP_OF_LEG(prps_h_2_in_spec2_z);
-        KEEP_OF_LEG(prps_h_3_in_spec2_x);
-        KEEP_OF_LEG(prps_h_3_in_spec2_y);
-        KEEP_OF_LEG(prps_h_3_in_spec2_z);
-        KEEP_OF_LEG(prps_link1_mass);
-        KEEP_OF_LEG(prps_link2_mass);
-        KEEP_OF_LEG(prps_link3_mass);
-        KEEP_OF_LEG(prps_platform_point_x);
-        KEEP_OF_LEG(prps_platform_point_y);
-        KEEP_OF_LEG(prps_platform_point_z);
-        KEEP_OF_LEG(prps_potential_t);
-        KEEP_OF_LEG(prps_potential_t_2);
-        KEEP_OF_LEG(prps_potential_t_3);
-        KEEP_OF_LEG(prps_potential_t_4);
-        m_star_of_legs += leg < LEGS_OF_prps ? prps_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_prps ? prps_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_prps ? prps_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_prps ? prps_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_10 : 0;
-        b_c_prps_in_platform_x += leg < LEGS_OF_prps ? prps_platform_point_x : 0;
-        b_c_prps_in_platform_y += leg < LEGS_OF_prps ? prps_platform_point_y : 0;
-        b_c_prps_in_platform_z += leg < LEGS_OF_prps ? prps_platform_point_z : 0;
+        KEEP_OF_LEG(prps_b_in_axes0_z, prps_base_frame_xz*prps_base_point_x +
+            prps_base_frame_yz*prps_base_point_y + prps_base_frame_zz*prps_base_point_z);
+        KEEP_OF_LEG(prps_potential_t, prps_b_in_axes0_x*prps_link1_mass);
+        KEEP_OF_LEG(prps_potential_t_2, prps_b_in_axes0_y*prps_link1_mass);
+        KEEP_OF_LEG(prps_potential_t_3, prps_b_in_axes0_x*prps_link2_mass);
+        KEEP_OF_LEG(prps_potential_t_4, prps_b_in_axes0_y*prps_link2_mass);
+        if (leg < LEGS_OF_prps) {
+            m_star_of_legs += prps_link3_mass;
+            h_star_in_platform_x_of_legs += prps_h_star_t;
+            h_star_in_platform_y_of_legs += prps_h_star_t_2;
+            h_star_in_platform_z_of_legs += prps_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -prps_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -prps_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -prps_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -prps_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -prps_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -prps_J_star_t_10;
+            b_c_prps_in_platform_x += prps_platform_point_x;
+            b_c_prps_in_platform_y += prps_platform_point_y;
+            b_c_prps_in_platform_z += prps_platform_point_z;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prps_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prps_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_prps_in_platform_z;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_prps_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_prps_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_prps_in_platform_z);
     return OK;
 }
 
@@ -1490,14 +1439,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1536,7 +1485,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1625,7 +1574,7 @@ INLINE void stage_prps_X(const prepared *m, size_t w, size_t i, size_t j, const 
         m->prps_base_frame_yx[i]*v->prps_s_2;
     v->axis_y_prps_axes2_z = m->prps_base_frame_zy[i]*v->prps_c_2 -
         m->prps_base_frame_zx[i]*v->prps_s_2;
-    /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (prps-acc_3) */
     v->prps_g_in_axes2_x = v->prps_c_2*m->prps_g_in_axes0_x[i] +
         m->prps_g_in_axes0_y[i]*v->prps_s_2;
     v->prps_g_in_axes2_y = v->prps_c_2*m->prps_g_in_axes0_y[i] -
@@ -1649,7 +1598,7 @@ INLINE void stage_prps_X(const prepared *m, size_t w, size_t i, size_t j, const 
 INLINE void stage_prps_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_prps *v)
 {
-    /* (prps-S_dot) velocity of the connection point */
+    /* (prps-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->prps_S_dot_t = omega_y*v->prps_q_z - omega_z*v->prps_q_y;
@@ -1664,7 +1613,7 @@ INLINE void stage_prps_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->prps_S_dot_z = t_dot_z + v->prps_S_dot_t_3;
     v->prps_S_dot_in_axes2_x = v->axis_x_prps_axes2_x*v->prps_S_dot_x +
         v->axis_x_prps_axes2_y*v->prps_S_dot_y + v->axis_x_prps_axes2_z*v->prps_S_dot_z;
-    /* (prps-qd_2) rate of joint 2 */
+    /* (prps-qd_2) */
     v->prps_qd_2 = v->inv_prps_q_3*(v->axis_y_prps_axes2_x*v->prps_S_dot_x +
         v->axis_y_prps_axes2_y*v->prps_S_dot_y + v->axis_y_prps_axes2_z*v->prps_S_dot_z);
     /* (prps-W_2) centripetal tensor of link 2 */
@@ -1782,7 +1731,7 @@ INLINE void stage_prps_M_dynamics(const prepared *m, size_t i, values_prps *v)
     const real prps_d_c_in_axes2_xy = v->inv_prps_q_3*m->prps_h_3_in_spec2_y[i];
     const real prps_d_c_in_axes2_yy = -v->inv_prps_q_3*m->prps_h_3_in_spec2_x[i] -
         v->inv_prps_q_3*prps_d_Gamma_2_in_axes2_y;
-    /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
+    /* (prps-Q) */
     const real prps_Q_t = R(0.5)*prps_d_c_in_axes2_yy;
     const real prps_Q_t_2 = v->axis_x_prps_axes2_x*prps_d_c_in_axes2_xy +
         v->axis_y_prps_axes2_x*prps_Q_t;
@@ -1823,22 +1772,21 @@ INLINE void stage_prps_M_dynamics(const prepared *m, size_t i, values_prps *v)
 
 INLINE void stage_prps_legs_required(const prepared *m, size_t i, values_prps *v)
 {
-    /* (prps-acc_1) acceleration of the reference point of link 1, less gravity */
+    /* (prps-acc_1) */
     v->prps_acc_1_in_axes0_z = v->prps_S_ddot_in_axes2_z - m->prps_g_in_axes0_z[i];
-    /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (prps-acc_3) */
     v->prps_acc_3_in_axes2_x = v->prps_S_ddot_in_axes2_x - v->prps_g_in_axes2_x;
     v->prps_acc_3_in_axes2_y = v->prps_S_ddot_in_axes2_y - v->prps_g_in_axes2_y;
-    /* (prps-phi_3) inertia force of link 3 from its turning about its reference point */
+    /* (prps-phi_3) */
     v->prps_phi_3_in_axes2_x = v->prps_phi_3_t - m->prps_h_3_in_spec2_y[i]*v->prps_qdd_2;
-    /* (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (prps-mu_2) */
     const real prps_mu_2_in_axes2_z = v->prps_acc_3_in_axes2_y*m->prps_h_3_in_spec2_x[i] -
         v->prps_mu_2_t - v->prps_acc_3_in_axes2_x*m->prps_h_3_in_spec2_y[i] +
         m->prps_Jc_2_in_axes2_zz[i]*v->prps_qdd_2;
     /* (prps-T_1) inertia force of the links from 1 outwards, the last link left out */
     v->prps_T_1_in_axes0_z = v->prps_acc_1_in_axes0_z*m->prps_link1_mass[i] +
         v->prps_acc_1_in_axes0_z*m->prps_link2_mass[i];
-    /* (prps-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prps-c) */
     v->prps_c_in_axes2_y = v->prps_c_t - m->prps_h_3_in_spec2_x[i]*v->prps_qdd_2 -
         v->inv_prps_q_3*prps_mu_2_in_axes2_z;
 }
@@ -1896,7 +1844,7 @@ INLINE void any_sums_prps(size_t k, size_t count, int add, const values_prps *v,
     gather(&terms[3*count + k], add, v->prps_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->prps_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->prps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->prps_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, -v->prps_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->prps_M_ta_t);  /* M_ta_xy_of_legs */
@@ -1905,7 +1853,7 @@ INLINE void any_sums_prps(size_t k, size_t count, int add, const values_prps *v,
     gather(&terms[11*count + k], add, v->prps_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->prps_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->prps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->prps_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->prps_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->prps_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -1920,7 +1868,7 @@ INLINE void any_sums_prps_2(size_t k, size_t count, int add, const values_prps *
     gather(&terms[0*count + k], add, v->prps_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->prps_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->prps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->prps_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->prps_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->prps_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -1933,7 +1881,7 @@ INLINE void any_entries_prps(const prepared *m, size_t i, size_t k, size_t count
     o[0*count + k] = m->prps_base_frame_xz[i];
     o[1*count + k] = m->prps_base_frame_yz[i];
     o[2*count + k] = m->prps_base_frame_zz[i];
-    /* (prps-H_a_1) moment of the column's unit force about the platform origin */
+    /* (prps-H_a_1) */
     o[3*count + k] = v->prps_H_a_1_x;
     o[4*count + k] = v->prps_H_a_1_y;
     o[5*count + k] = v->prps_H_a_1_z;
@@ -1941,10 +1889,140 @@ INLINE void any_entries_prps(const prepared *m, size_t i, size_t k, size_t count
     o[6*count + k] = v->axis_x_prps_axes2_x;
     o[7*count + k] = v->axis_x_prps_axes2_y;
     o[8*count + k] = v->axis_x_prps_axes2_z;
-    /* (prps-H_a_3) moment of the column's unit force about the platform origin */
+    /* (prps-H_a_3) */
     o[9*count + k] = v->prps_H_a_3_x;
     o[10*count + k] = v->prps_H_a_3_y;
     o[11*count + k] = v->prps_H_a_3_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_prps_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2032,132 +2110,15 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)26)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_prps[SUMS_OF_dynamics*LEGS(LEGS_OF_prps)] CLEARED, o_prps[14*LEGS(LEGS_OF_prps)]
@@ -2221,103 +2182,13 @@ INLINE void M_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)20)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_prps[SUMS_OF_M*LEGS(LEGS_OF_prps)] CLEARED, o_prps[LEGS(LEGS_OF_prps)] CLEARED;
@@ -2336,7 +2207,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2389,35 +2260,7 @@ INLINE void Z_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2443,7 +2286,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2488,7 +2331,7 @@ INLINE void H_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_prps[14*LEGS(LEGS_OF_prps)] CLEARED;
@@ -2600,8 +2443,7 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     stage_prps_V_X(m, w, i, j, V, &v);
     stage_prps_A_V_X(m, w, i, j, s, A, &v);
     stage_prps_legs_required(m, i, &v);
-    /* (prps-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prps-c) */
     const real prps_c_x = v.axis_y_prps_axes2_x*v.prps_c_in_axes2_y -
         v.prps_T_1_in_axes0_z*m->prps_base_frame_xz[i] -
         v.axis_x_prps_axes2_x*v.prps_phi_3_in_axes2_x;
@@ -2611,11 +2453,11 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     const real prps_c_z = v.axis_y_prps_axes2_z*v.prps_c_in_axes2_y -
         v.prps_T_1_in_axes0_z*m->prps_base_frame_zz[i] -
         v.axis_x_prps_axes2_z*v.prps_phi_3_in_axes2_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real prps_R_a_t = prps_c_y*v.prps_q_z - prps_c_z*v.prps_q_y;
     const real prps_R_a_t_2 = prps_c_z*v.prps_q_x - prps_c_x*v.prps_q_z;
     const real prps_R_a_t_3 = prps_c_x*v.prps_q_y - prps_c_y*v.prps_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, prps_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prps_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, prps_c_z);  /* R_t_z_of_legs */
@@ -2648,7 +2490,7 @@ INLINE void required_place_prps(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2658,7 +2500,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2706,8 +2548,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_prps[13*LANES];
@@ -2740,7 +2582,7 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t i, 
 {
     values_prps v;
     stage_prps_X(m, w, i, j, s, X, &v);
-    /* (prps-S) from the base point to the connection point */
+    /* (prps-S) */
     const real prps_S_in_axes0_z = v.prps_S_x*m->prps_base_frame_xz[i] +
         v.prps_S_y*m->prps_base_frame_yz[i] + v.prps_S_z*m->prps_base_frame_zz[i];
     /* (prps-q_2) displacement of joint 2 */
@@ -2749,7 +2591,7 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = prps_S_in_axes0_z;
     /* (prps-q_2) */
     o[1*count + k] = prps_q_2;
-    /* (prps-q_3) displacement of joint 3 */
+    /* (prps-q_3) */
     o[2*count + k] = v.prps_q_3;
     o[3*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
@@ -2768,7 +2610,8 @@ INLINE void inverse_kinematics_place_prps(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
@@ -2812,12 +2655,12 @@ INLINE void joint_rates_legs_prps(const prepared *m, size_t w, size_t i, size_t 
     values_prps v;
     stage_prps_X(m, w, i, j, s, X, &v);
     stage_prps_V_X(m, w, i, j, V, &v);
-    /* (prps-S_dot) velocity of the connection point */
+    /* (prps-S_dot) */
     const real prps_S_dot_in_axes2_z = v.prps_S_dot_x*m->prps_base_frame_xz[i] +
         v.prps_S_dot_y*m->prps_base_frame_yz[i] + v.prps_S_dot_z*m->prps_base_frame_zz[i];
     /* (prps-qd_1) rate of joint 1 */
     o[0*count + k] = prps_S_dot_in_axes2_z;
-    /* (prps-qd_2) rate of joint 2 */
+    /* (prps-qd_2) */
     o[1*count + k] = v.prps_qd_2;
     /* (prps-qd_3) rate of joint 3 */
     o[2*count + k] = v.prps_S_dot_in_axes2_x;
@@ -2838,8 +2681,8 @@ INLINE void joint_rates_place_prps(size_t w, size_t i, size_t k, size_t at, size
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
@@ -2884,12 +2727,12 @@ INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t i,
     stage_prps_X(m, w, i, j, s, X, &v);
     stage_prps_V_X(m, w, i, j, V, &v);
     stage_prps_A_V_X(m, w, i, j, s, A, &v);
-    /* (prps-rel) acceleration of the connection point left to the joint accelerations */
+    /* (prps-rel) */
     const real prps_rel_in_axes2_x = v.prps_S_ddot_in_axes2_x -
         v.prps_W_2_in_axes2_xx*v.prps_q_3;
     /* (prps-qdd_1) acceleration of joint 1 */
     o[0*count + k] = v.prps_S_ddot_in_axes2_z;
-    /* (prps-qdd_2) acceleration of joint 2 */
+    /* (prps-qdd_2) */
     o[1*count + k] = v.prps_qdd_2;
     /* (prps-qdd_3) acceleration of joint 3 */
     o[2*count + k] = prps_rel_in_axes2_x;
@@ -2910,8 +2753,8 @@ INLINE void joint_accelerations_place_prps(size_t w, size_t i, size_t k, size_t 
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
@@ -2977,11 +2820,11 @@ INLINE void legs_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size
     o[0*count + k] = prps_c_true_x;
     o[1*count + k] = prps_c_true_y;
     o[2*count + k] = prps_c_true_z;
-    /* (prps-w_1) reciprocal vector 1 */
+    /* (prps-w_1) */
     o[3*count + k] = m->prps_base_frame_xz[i];
     o[4*count + k] = m->prps_base_frame_yz[i];
     o[5*count + k] = m->prps_base_frame_zz[i];
-    /* (prps-w_3) reciprocal vector 3 */
+    /* (prps-w_3) */
     o[6*count + k] = v.axis_x_prps_axes2_x;
     o[7*count + k] = v.axis_x_prps_axes2_y;
     o[8*count + k] = v.axis_x_prps_axes2_z;
@@ -3028,7 +2871,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3043,7 +2886,7 @@ INLINE void potential_legs_prps(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_prps v;
     stage_prps_X(m, w, i, j, s, X, &v);
-    /* (prps-S) from the base point to the connection point */
+    /* (prps-S) */
     const real prps_S_in_axes0_z = v.prps_S_x*m->prps_base_frame_xz[i] +
         v.prps_S_y*m->prps_base_frame_yz[i] + v.prps_S_z*m->prps_base_frame_zz[i];
     /* (potential) */
@@ -3115,7 +2958,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3174,7 +3017,7 @@ INLINE void condition_place_prps(size_t w, size_t i, size_t k, size_t at, size_t
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_prps = sums[0*w + k];
     const real spread_ = root(spread_prps)*m->spread_t;
     /* (spread) */
@@ -3185,8 +3028,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_prps[SUMS_OF_condition*LEGS(LEGS_OF_prps)] CLEARED, o_prps[15*LEGS(LEGS_OF_prps)]
@@ -3209,7 +3052,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int hybrid_3prps_M(const prepared *m, const real *X, real *M_out)
+NARROW int hybrid_3prps_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3232,7 +3075,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int hybrid_3prps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int hybrid_3prps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3256,7 +3099,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int hybrid_3prps_H(const prepared *m, const real *X, real *H_out)
+NARROW int hybrid_3prps_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3279,7 +3122,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int hybrid_3prps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3prps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3302,7 +3145,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int hybrid_3prps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int hybrid_3prps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3327,8 +3170,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int hybrid_3prps_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int hybrid_3prps_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3354,8 +3197,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int hybrid_3prps_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int hybrid_3prps_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3560,8 +3403,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {1, 2, 0, 4, 5, 3};
 static const real sizes_tau[] = {1.0, 1.0, 1.0, 0.25, 0.25, 0.25};
 
-int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -3610,8 +3453,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 4.0};
 
-int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out)
+NARROW int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -3667,8 +3510,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int hybrid_3prps_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int hybrid_3prps_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -3681,8 +3524,8 @@ int hybrid_3prps_complete_acceleration(const prepared *m, const real *X, const r
     return finished(NV, completed, completed_out, &why);
 }
 
-int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
@@ -3700,8 +3543,8 @@ int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, 
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -3719,7 +3562,8 @@ int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *k
     return final_status(&why, 1, potential_out);
 }
 
-int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -3752,7 +3596,7 @@ int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma_out, re
     return final_status(&why, NL, legs_out);
 }
 
-int hybrid_3prps_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int hybrid_3prps_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -3786,8 +3630,8 @@ int hybrid_3prps_manipulability(const prepared *m, const real *X, real *measure_
     return final_status(&why, 1, isotropy_out);
 }
 
-int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -3820,7 +3664,7 @@ int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real *ac
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[6] = {0}, residual[NU] CLEARED;
@@ -3835,7 +3679,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -3892,8 +3736,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int hybrid_3prps_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
-    real *X_out)
+NARROW int hybrid_3prps_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -3903,7 +3747,7 @@ int hybrid_3prps_forward_kinematics(const prepared *m, const real *q_actuated, c
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -3919,7 +3763,8 @@ int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, re
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -3930,7 +3775,7 @@ int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real 
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -3946,7 +3791,7 @@ int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_o
     return final_status(&why, NJ, margins_out);
 }
 
-int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -3960,7 +3805,7 @@ int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_ou
     return finished(1, within, within_out, &why);
 }
 
-int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -3971,7 +3816,8 @@ int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_ou
     return finished(NU, q, q_out, &why);
 }
 
-int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3982,8 +3828,8 @@ int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V,
     return finished(NU, qd, qd_out, &why);
 }
 
-int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3994,8 +3840,8 @@ int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const 
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int hybrid_3prps_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int hybrid_3prps_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4007,7 +3853,7 @@ int hybrid_3prps_power(const prepared *m, const real *X, const real *V, const re
     return finished(1, power, power_out, &why);
 }
 
-int hybrid_3prps_rotation(const real *X, real *R_out)
+NARROW int hybrid_3prps_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -4018,19 +3864,18 @@ int hybrid_3prps_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int hybrid_3prps_pose(const real *t, const real *R, real *X_out)
+NARROW int hybrid_3prps_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -4043,19 +3888,18 @@ int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int hybrid_3prps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int hybrid_3prps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -4071,7 +3915,7 @@ int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
+NARROW int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -4087,7 +3931,7 @@ int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int hybrid_3prps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int hybrid_3prps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HYBRID_3RRRS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3RRRS_LANES >= 4 && VECTORS_OF(HYBRID_3RRRS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -642,8 +659,9 @@ static int acceptable(const hybrid_3rrrs_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *model)
 {
@@ -665,9 +683,9 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
     real b_c_rrrs_in_platform_y = 0;
     real b_c_rrrs_in_platform_z = 0;
     real legs_size_rrrs = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -694,37 +712,33 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rrrs); ++leg) {
         const size_t own = leg < LEGS_OF_rrrs ? leg : 0;
-        const real rrrs_base_point_x = params->rrrs_base_point[own][0];
-        const real rrrs_base_point_y = params->rrrs_base_point[own][1];
-        const real rrrs_base_point_z = params->rrrs_base_point[own][2];
-        const real rrrs_base_frame_xx = params->rrrs_base_frame[own][0][0];
-        const real rrrs_base_frame_xy = params->rrrs_base_frame[own][0][1];
-        const real rrrs_base_frame_xz = params->rrrs_base_frame[own][0][2];
-        const real rrrs_base_frame_yx = params->rrrs_base_frame[own][1][0];
-        const real rrrs_base_frame_yy = params->rrrs_base_frame[own][1][1];
-        const real rrrs_base_frame_yz = params->rrrs_base_frame[own][1][2];
-        const real rrrs_base_frame_zx = params->rrrs_base_frame[own][2][0];
-        const real rrrs_base_frame_zy = params->rrrs_base_frame[own][2][1];
-        const real rrrs_base_frame_zz = params->rrrs_base_frame[own][2][2];
-        const real rrrs_platform_point_x = params->rrrs_platform_point[own][0];
-        const real rrrs_platform_point_y = params->rrrs_platform_point[own][1];
-        const real rrrs_platform_point_z = params->rrrs_platform_point[own][2];
-        const real rrrs_joint2_offset_x = params->rrrs_joint2_offset[own][0];
-        const real rrrs_joint3_offset_x = params->rrrs_joint3_offset[own][0];
-        const real rrrs_platform_joint_offset_x = params->rrrs_platform_joint_offset[own][0];
-        const real rrrs_link1_mass = params->rrrs_link1_mass[own];
+        KEEP_OF_LEG(rrrs_base_point_x, params->rrrs_base_point[own][0]);
+        KEEP_OF_LEG(rrrs_base_point_y, params->rrrs_base_point[own][1]);
+        KEEP_OF_LEG(rrrs_base_point_z, params->rrrs_base_point[own][2]);
+        KEEP_OF_LEG(rrrs_base_frame_xx, params->rrrs_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrrs_base_frame_xy, params->rrrs_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrrs_base_frame_xz, params->rrrs_base_frame[own][0][2]);
+        KEEP_OF_LEG(rrrs_base_frame_yx, params->rrrs_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrrs_base_frame_yy, params->rrrs_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrrs_base_frame_yz, params->rrrs_base_frame[own][1][2]);
+        KEEP_OF_LEG(rrrs_base_frame_zx, params->rrrs_base_frame[own][2][0]);
+        KEEP_OF_LEG(rrrs_base_frame_zy, params->rrrs_base_frame[own][2][1]);
+        KEEP_OF_LEG(rrrs_base_frame_zz, params->rrrs_base_frame[own][2][2]);
+        KEEP_OF_LEG(rrrs_platform_point_x, params->rrrs_platform_point[own][0]);
+        KEEP_OF_LEG(rrrs_platform_point_y, params->rrrs_platform_point[own][1]);
+        KEEP_OF_LEG(rrrs_platform_point_z, params->rrrs_platform_point[own][2]);
+        KEEP_OF_LEG(rrrs_joint2_offset_x, params->rrrs_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrrs_joint3_offset_x, params->rrrs_joint3_offset[own][0]);
+        KEEP_OF_LEG(rrrs_platform_joint_offset_x, params->rrrs_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrrs_link1_mass, params->rrrs_link1_mass[own]);
         const real rrrs_link1_centre_of_mass_x = params->rrrs_link1_centre_of_mass[own][0];
         const real rrrs_link1_centre_of_mass_y = params->rrrs_link1_centre_of_mass[own][1];
         const real rrrs_link1_centre_of_mass_z = params->rrrs_link1_centre_of_mass[own][2];
         const real rrrs_link1_inertia_xx = params->rrrs_link1_inertia[own][0][0];
-        const real rrrs_link2_mass = params->rrrs_link2_mass[own];
+        KEEP_OF_LEG(rrrs_link2_mass, params->rrrs_link2_mass[own]);
         const real rrrs_link2_centre_of_mass_x = params->rrrs_link2_centre_of_mass[own][0];
         const real rrrs_link2_centre_of_mass_y = params->rrrs_link2_centre_of_mass[own][1];
         const real rrrs_link2_centre_of_mass_z = params->rrrs_link2_centre_of_mass[own][2];
@@ -734,7 +748,7 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_link2_inertia_yy = params->rrrs_link2_inertia[own][1][1];
         const real rrrs_link2_inertia_yz = params->rrrs_link2_inertia[own][1][2];
         const real rrrs_link2_inertia_zz = params->rrrs_link2_inertia[own][2][2];
-        const real rrrs_link3_mass = params->rrrs_link3_mass[own];
+        KEEP_OF_LEG(rrrs_link3_mass, params->rrrs_link3_mass[own]);
         const real rrrs_link3_centre_of_mass_x = params->rrrs_link3_centre_of_mass[own][0];
         const real rrrs_link3_centre_of_mass_y = params->rrrs_link3_centre_of_mass[own][1];
         const real rrrs_link3_centre_of_mass_z = params->rrrs_link3_centre_of_mass[own][2];
@@ -745,122 +759,122 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_link3_inertia_yz = params->rrrs_link3_inertia[own][1][2];
         const real rrrs_link3_inertia_zz = params->rrrs_link3_inertia[own][2][2];
         static const signed char signs_rrrs_branch_1[] = {1, 1, 1};
-        const real rrrs_branch_1 = signs_rrrs_branch_1[own];
+        KEEP_OF_LEG(rrrs_branch_1, signs_rrrs_branch_1[own]);
         static const signed char signs_rrrs_branch_2[] = {1, 1, 1};
-        const real rrrs_branch_2 = signs_rrrs_branch_2[own];
+        KEEP_OF_LEG(rrrs_branch_2, signs_rrrs_branch_2[own]);
         /* (rrrs-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrrs_size_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x;
         const real rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x;
-        const real rrrs_size_t_3 = R(6.238219509759999e-07) + rrrs_size_t + rrrs_size_t_2;
-        const real rrrs_size = root(rrrs_size_t_3);
+        KEEP_OF_LEG(rrrs_size_t_3, R(6.238219509759999e-07) + rrrs_size_t + rrrs_size_t_2);
+        KEEP_OF_LEG(rrrs_size, root(rrrs_size_t_3));
         /* (rrrs-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrrs_h_1_in_spec1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass;
-        const real rrrs_h_1_in_spec1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass;
-        const real rrrs_h_1_in_spec1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass;
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_x, rrrs_link1_centre_of_mass_x*rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_y, rrrs_link1_centre_of_mass_y*rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_z, rrrs_link1_centre_of_mass_z*rrrs_link1_mass);
         /* (rrrs-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
         const real rrrs_J_1_t_2 = rrrs_J_1_t +
             rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
             rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
-        const real rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
-            rrrs_J_1_t_2);
+        KEEP_OF_LEG(rrrs_J_1_in_spec1_xx, rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
+            rrrs_J_1_t_2));
         /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-        const real rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
-        const real rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_x, rrrs_link2_centre_of_mass_x*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_y, rrrs_link2_centre_of_mass_y*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_z, rrrs_link2_centre_of_mass_z*rrrs_link2_mass);
         /* (rrrs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
         const real rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
         const real rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z;
         const real rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3;
-        const real rrrs_J_2_in_spec2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t -
-            rrrs_J_2_t_4);
-        const real rrrs_J_2_in_spec2_xy = rrrs_link2_inertia_xy -
-            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real rrrs_J_2_in_spec2_xz = rrrs_link2_inertia_xz -
-            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        const real rrrs_J_2_in_spec2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 -
-            rrrs_J_2_t_4);
-        const real rrrs_J_2_in_spec2_yz = rrrs_link2_inertia_yz -
-            rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xx, rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t -
+            rrrs_J_2_t_4));
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xy, rrrs_link2_inertia_xy -
+            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xz, rrrs_link2_inertia_xz -
+            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yy, rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 -
+            rrrs_J_2_t_4));
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yz, rrrs_link2_inertia_yz -
+            rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass);
         const real rrrs_J_2_in_spec2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 -
             rrrs_J_2_t_4);
         /* (rrrs-rho_tip_3) connection point to the centre of mass of link 3 */
         const real rrrs_rho_tip_3_in_spec3_x = rrrs_link3_centre_of_mass_x -
             rrrs_platform_joint_offset_x;
         /* (rrrs-h_3) first moment of link 3 about the connection point */
-        const real rrrs_h_3_in_spec3_x = rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
-        const real rrrs_h_3_in_spec3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
-        const real rrrs_h_3_in_spec3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_x, rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_y, rrrs_link3_centre_of_mass_y*rrrs_link3_mass);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_z, rrrs_link3_centre_of_mass_z*rrrs_link3_mass);
         /* (rrrs-J_3) inertia tensor of link 3 about the connection point */
         const real rrrs_J_3_t = rrrs_rho_tip_3_in_spec3_x*rrrs_rho_tip_3_in_spec3_x;
         const real rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y;
         const real rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z;
         const real rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3;
-        const real rrrs_J_3_in_spec3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t -
-            rrrs_J_3_t_4);
-        const real rrrs_J_3_in_spec3_xy = rrrs_link3_inertia_xy -
-            rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
-        const real rrrs_J_3_in_spec3_xz = rrrs_link3_inertia_xz -
-            rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
-        const real rrrs_J_3_in_spec3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 -
-            rrrs_J_3_t_4);
-        const real rrrs_J_3_in_spec3_yz = rrrs_link3_inertia_yz -
-            rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
-        const real rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
-            rrrs_J_3_t_4);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xx, rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t -
+            rrrs_J_3_t_4));
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xy, rrrs_link3_inertia_xy -
+            rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xz, rrrs_link3_inertia_xz -
+            rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yy, rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 -
+            rrrs_J_3_t_4));
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yz, rrrs_link3_inertia_yz -
+            rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_zz, rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
+            rrrs_J_3_t_4));
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t = R(0.5)*rrrs_size_t;
-        const real rrrs_Kd_2_t_2 = R(0.5)*rrrs_size_t_2;
+        KEEP_OF_LEG(rrrs_Kd_2_t, R(0.5)*rrrs_size_t);
+        KEEP_OF_LEG(rrrs_Kd_2_t_2, R(0.5)*rrrs_size_t_2);
         /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3;
+        KEEP_OF_LEG(rrrs_rho2_2_t, rrrs_size*rrrs_size*rrrs_size_t_3);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = 1/rrrs_size_t;
+        KEEP_OF_LEG(inv_rrrs_size_t, 1/rrrs_size_t);
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = 1/rrrs_size_t_2;
+        KEEP_OF_LEG(inv_rrrs_size_t_2, 1/rrrs_size_t_2);
         /* (rrrs-w_3) reciprocal vector 3 */
-        const real rrrs_w_3_in_axes3_y = 1/rrrs_platform_joint_offset_x;
+        KEEP_OF_LEG(rrrs_w_3_in_axes3_y, 1/rrrs_platform_joint_offset_x);
         /* (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real rrrs_d_phi_3_t = rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y;
+        KEEP_OF_LEG(rrrs_d_phi_3_t, rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y);
         /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz;
+        KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz, rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz);
         /* (rrrs-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real rrrs_Sigma_3_t = rrrs_J_3_in_spec3_xx + rrrs_J_3_in_spec3_yy +
             rrrs_J_3_in_spec3_zz;
         const real rrrs_Sigma_3_t_2 = R(0.5)*rrrs_Sigma_3_t;
-        const real rrrs_Sigma_3_in_axes3_xx = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_xx;
-        const real rrrs_Sigma_3_in_axes3_yy = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_yy;
-        const real rrrs_Sigma_3_in_axes3_zz = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_zz;
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_zz, rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_zz);
         /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y;
-        const real rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x;
+        KEEP_OF_LEG(rrrs_d_Gamma_3_t, rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y);
+        KEEP_OF_LEG(rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x);
         /* (rrrs-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real rrrs_Sigma_2_t = rrrs_J_2_in_spec2_xx + rrrs_J_2_in_spec2_yy +
             rrrs_J_2_in_spec2_zz;
         const real rrrs_Sigma_2_t_2 = R(0.5)*rrrs_Sigma_2_t;
-        const real rrrs_Sigma_2_in_axes2_xx = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_xx;
-        const real rrrs_Sigma_2_in_axes2_yy = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_yy;
-        const real rrrs_Sigma_2_in_axes2_zz = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_zz);
         /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrs_mu_2_t = gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
-            gravity_z*rrrs_base_frame_zy;
-        const real rrrs_mu_2_t_2 = gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz +
-            gravity_z*rrrs_base_frame_zz;
-        const real rrrs_g_in_axes1_z = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx
-            + gravity_z*rrrs_base_frame_zx;
+        KEEP_OF_LEG(rrrs_mu_2_t, gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
+            gravity_z*rrrs_base_frame_zy);
+        KEEP_OF_LEG(rrrs_mu_2_t_2, gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz +
+            gravity_z*rrrs_base_frame_zz);
+        KEEP_OF_LEG(rrrs_g_in_axes1_z, gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx
+            + gravity_z*rrrs_base_frame_zx);
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrrs_size_t_3 = 1/rrrs_size_t_3;
-        const real inv_rrrs_rho2_2_t = 1/rrrs_rho2_2_t;
-        const real inv_rrrs_size = 1/rrrs_size;
+        KEEP_OF_LEG(inv_rrrs_size_t_3, 1/rrrs_size_t_3);
+        KEEP_OF_LEG(inv_rrrs_rho2_2_t, 1/rrrs_rho2_2_t);
+        KEEP_OF_LEG(inv_rrrs_size, 1/rrrs_size);
         /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrrs_d_c_in_axes3_yy = -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y -
-            rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y;
+        KEEP_OF_LEG(rrrs_d_c_in_axes3_yy, -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y -
+            rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y);
         /* (h_star) */
         const real rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x;
         const real rrrs_h_star_t_2 = rrrs_link3_mass*rrrs_platform_point_y;
@@ -877,158 +891,66 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z;
         const real rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4);
         /* (potential) potential energy */
-        const real rrrs_potential_t = rrrs_base_frame_xy*rrrs_base_point_x +
-            rrrs_base_frame_yy*rrrs_base_point_y + rrrs_base_frame_zy*rrrs_base_point_z;
-        const real rrrs_potential_t_2 = rrrs_base_frame_xz*rrrs_base_point_x +
-            rrrs_base_frame_yz*rrrs_base_point_y + rrrs_base_frame_zz*rrrs_base_point_z;
+        KEEP_OF_LEG(rrrs_potential_t, rrrs_base_frame_xy*rrrs_base_point_x +
+            rrrs_base_frame_yy*rrrs_base_point_y + rrrs_base_frame_zy*rrrs_base_point_z);
+        KEEP_OF_LEG(rrrs_potential_t_2, rrrs_base_frame_xz*rrrs_base_point_x +
+            rrrs_base_frame_yz*rrrs_base_point_y + rrrs_base_frame_zz*rrrs_base_point_z);
         const real rrrs_b_in_spec1_x = rrrs_base_frame_xx*rrrs_base_point_x +
             rrrs_base_frame_yx*rrrs_base_point_y + rrrs_base_frame_zx*rrrs_base_point_z;
-        const real rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass;
-        const real rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x +
-            rrrs_joint2_offset_x);
-        KEEP_OF_LEG(inv_rrrs_rho2_2_t);
-        KEEP_OF_LEG(inv_rrrs_size);
-        KEEP_OF_LEG(inv_rrrs_size_t);
-        KEEP_OF_LEG(inv_rrrs_size_t_2);
-        KEEP_OF_LEG(inv_rrrs_size_t_3);
-        KEEP_OF_LEG(rrrs_J_1_in_spec1_xx);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_xx);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_xy);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_xz);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_yy);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_yz);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_xx);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_xy);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_xz);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_yy);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_yz);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_zz);
-        KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz);
-        KEEP_OF_LEG(rrrs_Kd_2_t);
-        KEEP_OF_LEG(rrrs_Kd_2_t_2);
-        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(rrrs_base_frame_xx);
-        KEEP_OF_LEG(rrrs_base_frame_xy);
-        KEEP_OF_LEG(rrrs_base_frame_xz);
-        KEEP_OF_LEG(rrrs_base_frame_yx);
-        KEEP_OF_LEG(rrrs_base_frame_yy);
-        KEEP_OF_LEG(rrrs_base_frame_yz);
-        KEEP_OF_LEG(rrrs_base_frame_zx);
-        KEEP_OF_LEG(rrrs_base_frame_zy);
-        KEEP_OF_LEG(rrrs_base_frame_zz);
-        KEEP_OF_LEG(rrrs_base_point_x);
-        KEEP_OF_LEG(rrrs_base_point_y);
-        KEEP_OF_LEG(rrrs_base_point_z);
-        KEEP_OF_LEG(rrrs_branch_1);
-        KEEP_OF_LEG(rrrs_branch_2);
-        KEEP_OF_LEG(rrrs_d_Gamma_3_in_axes3_y);
-        KEEP_OF_LEG(rrrs_d_Gamma_3_t);
-        KEEP_OF_LEG(rrrs_d_c_in_axes3_yy);
-        KEEP_OF_LEG(rrrs_d_phi_3_t);
-        KEEP_OF_LEG(rrrs_g_in_axes1_z);
-        KEEP_OF_LEG(rrrs_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrrs_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrrs_h_1_in_spec1_z);
-        KEEP_OF_LEG(rrrs_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrrs_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrrs_h_2_in_spec2_z);
-        KEEP_OF_LEG(rrrs_h_3_in_spec3_x);
-        KEEP_OF_LEG(rrrs_h_3_in_spec3_y);
-        KEEP_OF_LEG(rrrs_h_3_in_spec3_z);
-        KEEP_OF_LEG(rrrs_joint2_offset_x);
-        KEEP_OF_LEG(rrrs_joint3_offset_x);
-        KEEP_OF_LEG(rrrs_link1_mass);
-        KEEP_OF_LEG(rrrs_link2_mass);
-        KEEP_OF_LEG(rrrs_link3_mass);
-        KEEP_OF_LEG(rrrs_mu_2_t);
-        KEEP_OF_LEG(rrrs_mu_2_t_2);
-        KEEP_OF_LEG(rrrs_platform_joint_offset_x);
-        KEEP_OF_LEG(rrrs_platform_point_x);
-        KEEP_OF_LEG(rrrs_platform_point_y);
-        KEEP_OF_LEG(rrrs_platform_point_z);
-        KEEP_OF_LEG(rrrs_potential_t);
-        KEEP_OF_LEG(rrrs_potential_t_2);
-        KEEP_OF_LEG(rrrs_potential_t_3);
-        KEEP_OF_LEG(rrrs_potential_t_4);
-        KEEP_OF_LEG(rrrs_rho2_2_t);
-        KEEP_OF_LEG(rrrs_size);
-        KEEP_OF_LEG(rrrs_size_t_3);
-        KEEP_OF_LEG(rrrs_w_3_in_axes3_y);
-        m_star_of_legs += leg < LEGS_OF_rrrs ? rrrs_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_rrrs ? rrrs_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_rrrs ? rrrs_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_rrrs ? rrrs_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_rrrs ? -rrrs_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_rrrs ? -rrrs_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_rrrs ? -rrrs_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_rrrs ? -rrrs_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_rrrs ? -rrrs_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_rrrs ? -rrrs_J_star_t_10 : 0;
-        b_c_rrrs_in_platform_x += leg < LEGS_OF_rrrs ? rrrs_platform_point_x : 0;
-        b_c_rrrs_in_platform_y += leg < LEGS_OF_rrrs ? rrrs_platform_point_y : 0;
-        b_c_rrrs_in_platform_z += leg < LEGS_OF_rrrs ? rrrs_platform_point_z : 0;
-        legs_size_rrrs += leg < LEGS_OF_rrrs ? rrrs_size_t_3 : 0;
+        KEEP_OF_LEG(rrrs_potential_t_3, rrrs_b_in_spec1_x*rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_potential_t_4, rrrs_link2_mass*(rrrs_b_in_spec1_x +
+            rrrs_joint2_offset_x));
+        if (leg < LEGS_OF_rrrs) {
+            m_star_of_legs += rrrs_link3_mass;
+            h_star_in_platform_x_of_legs += rrrs_h_star_t;
+            h_star_in_platform_y_of_legs += rrrs_h_star_t_2;
+            h_star_in_platform_z_of_legs += rrrs_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -rrrs_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -rrrs_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -rrrs_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -rrrs_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -rrrs_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -rrrs_J_star_t_10;
+            b_c_rrrs_in_platform_x += rrrs_platform_point_x;
+            b_c_rrrs_in_platform_y += rrrs_platform_point_y;
+            b_c_rrrs_in_platform_z += rrrs_platform_point_z;
+            legs_size_rrrs += rrrs_size_t_3;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rrrs_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rrrs_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rrrs_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_rrrs_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_rrrs_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_rrrs_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_rrrs)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_rrrs)*spread_t);
     return OK;
 }
 
@@ -1642,14 +1564,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1688,7 +1610,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1778,15 +1700,14 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1;
     /* (rrrs-x_2) from the origin of joint 2 to the connection point */
     const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - m->rrrs_joint2_offset_x[i];
-    /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 2 */
+    /* (rrrs-Kd_2) */
     const real rrrs_Kd_2_t_3 = v->rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
     const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
     const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
     const real rrrs_Ks_2 = m->rrrs_joint3_offset_x[i]*rrrs_root_1;
-    /* (rrrs-rho2_2) squared amplitude */
+    /* (rrrs-rho2_2) */
     v->rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
     /* (rrrs-disc_2) discriminant */
     v->rrrs_disc_2 = v->rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
@@ -1797,11 +1718,11 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kd_2*rrrs_Ks_2 + rrrs_Kc_2*rrrs_root_2);
-    /* (rrrs-x_3) from the origin of joint 3 to the connection point */
+    /* (rrrs-x_3) */
     const real rrrs_x_3_in_axes2_x =
         m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
         m->rrrs_joint3_offset_x[i];
-    /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
+    /* (rrrs-c_3) */
     v->rrrs_c_3 =
         m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_x_3_in_axes2_x;
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
@@ -1860,7 +1781,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
         v->axis_y_rrrs_axes3_y*m->gravity_y + v->axis_y_rrrs_axes3_z*m->gravity_z;
     v->rrrs_g_in_axes3_z = v->axis_z_rrrs_axes3_x*m->gravity_x +
         v->axis_z_rrrs_axes3_y*m->gravity_y + v->axis_z_rrrs_axes3_z*m->gravity_z;
-    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrs-mu_2) */
     v->rrrs_g_in_axes1_x = v->rrrs_c_1*m->rrrs_mu_2_t[i] + m->rrrs_mu_2_t_2[i]*v->rrrs_s_1;
     v->rrrs_g_in_axes1_y = v->rrrs_c_1*m->rrrs_mu_2_t_2[i] - m->rrrs_mu_2_t[i]*v->rrrs_s_1;
     const real rrrs_g_in_axes2_x = v->rrrs_c_2*m->rrrs_g_in_axes1_z[i] +
@@ -1889,7 +1810,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
 INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrrs *v)
 {
-    /* (rrrs-S_dot) velocity of the connection point */
+    /* (rrrs-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->rrrs_S_dot_t_3 = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
@@ -1938,7 +1859,7 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*v->rrrs_qd_3;
     /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - v->rrrs_zeta_3_t;
-    /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+    /* (rrrs-bias) */
     const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(v->rrrs_bias_t*v->rrrs_s_3_t -
         v->rrrs_bias_t_2*v->rrrs_c_3) - rrrs_omega_1_in_axes3_y*(v->rrrs_bias_t*v->rrrs_c_3 +
         v->rrrs_bias_t_2*v->rrrs_s_3_t);
@@ -1966,7 +1887,7 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->rrrs_mu_3_t_4 = m->rrrs_J_3_in_spec3_yz[i]*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3);
     v->rrrs_mu_3_t_5 = m->rrrs_J_3_in_spec3_xz[i]*(rrrs_mu_3_t - rrrs_mu_3_t_3);
     v->rrrs_mu_3_t_6 = m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2);
-    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrs-mu_2) */
     const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
     const real rrrs_mu_2_t_5 = v->rrrs_qd_2*v->rrrs_qd_2;
@@ -2189,11 +2110,11 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_B_3_in_axes3_yz = v->rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
     const real rrrs_B_3_in_axes3_zx = v->rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
     const real rrrs_B_3_in_axes3_zy = v->rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
-    /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (rrrs-acc_3) */
     v->rrrs_acc_3_in_axes3_x = v->rrrs_S_ddot_in_axes3_x - v->rrrs_g_in_axes3_x;
     v->rrrs_acc_3_in_axes3_y = v->rrrs_S_ddot_in_axes3_y - v->rrrs_g_in_axes3_y;
     v->rrrs_acc_3_in_axes3_z = v->rrrs_S_ddot_in_axes3_z - v->rrrs_g_in_axes3_z;
-    /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (rrrs-mu_3) */
     const real rrrs_mu_3_in_axes3_x = v->rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
         v->rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] + v->rrrs_mu_3_t_4 +
         rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
@@ -2212,7 +2133,7 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
         rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
         rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
-    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrs-mu_2) */
     const real rrrs_mu_2_in_axes2_x = v->rrrs_mu_2_t_6 - v->rrrs_mu_2_t_9 +
         rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_in_axes2_x +
@@ -2234,18 +2155,16 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + v->rrrs_c_3*rrrs_mu_3_in_axes3_y -
         rrrs_mu_3_in_axes3_x*v->rrrs_s_3_t;
     const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
-    /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrrs-mu_1) */
     const real rrrs_mu_1_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*v->rrrs_qdd_1 -
         v->rrrs_mu_1_t;
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
         rrrs_N_2_in_axes2_y*v->rrrs_s_2;
-    /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrrs-G) */
     const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
-    /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrrs-c) */
     v->rrrs_c_in_axes3_x = v->rrrs_c_t - rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
         rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
         v->rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*v->rrrs_r_2_in_axes3_x -
@@ -2259,14 +2178,13 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
 
 INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
 {
-    /* (rrrs-w_3) reciprocal vector 3 */
+    /* (rrrs-w_3) */
     const real rrrs_w_3_in_axes3_x =
         -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
     /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
     const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
         m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
-    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
+    /* (rrrs-Jc_2) */
     const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
     const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
     const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
@@ -2279,8 +2197,7 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
         v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
         m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
         v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
-    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
+    /* (rrrs-d_Gamma_3) */
     const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
     const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
         - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
@@ -2305,8 +2222,7 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
        leg's inertia and weight along all degrees of freedom */
     const real rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
     const real rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrrs-d_c) */
     const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
         rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
         rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
@@ -2421,7 +2337,7 @@ INLINE void any_sums_rrrs(size_t k, size_t count, int add, const values_rrrs *v,
     gather(&terms[3*count + k], add, v->rrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->rrrs_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->rrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->rrrs_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, v->rrrs_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, v->rrrs_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2430,7 +2346,7 @@ INLINE void any_sums_rrrs(size_t k, size_t count, int add, const values_rrrs *v,
     gather(&terms[11*count + k], add, v->rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->rrrs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2445,7 +2361,7 @@ INLINE void any_sums_rrrs_2(size_t k, size_t count, int add, const values_rrrs *
     gather(&terms[0*count + k], add, v->rrrs_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrrs_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->rrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->rrrs_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2453,19 +2369,19 @@ INLINE void any_sums_rrrs_2(size_t k, size_t count, int add, const values_rrrs *
 
 INLINE void any_entries_rrrs(size_t k, size_t count, const values_rrrs *v, real *o)
 {
-    /* (rrrs-w_1) reciprocal vector 1 */
+    /* (rrrs-w_1) */
     o[0*count + k] = v->rrrs_w_1_x;
     o[1*count + k] = v->rrrs_w_1_y;
     o[2*count + k] = v->rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrrs-H_a_1) */
     o[3*count + k] = v->rrrs_H_a_1_x;
     o[4*count + k] = v->rrrs_H_a_1_y;
     o[5*count + k] = v->rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
+    /* (rrrs-w_2) */
     o[6*count + k] = v->rrrs_w_2_x;
     o[7*count + k] = v->rrrs_w_2_y;
     o[8*count + k] = v->rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    /* (rrrs-H_a_2) */
     o[9*count + k] = v->rrrs_H_a_2_x;
     o[10*count + k] = v->rrrs_H_a_2_y;
     o[11*count + k] = v->rrrs_H_a_2_z;
@@ -2478,6 +2394,136 @@ INLINE void any_singular_rrrs(const prepared *m, size_t i, size_t k, const value
         UNLESS(magnitude(v->rrrs_rho2_2) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
         UNLESS(magnitude(v->rrrs_v_1_in_axes3_z) > TOLERANCE*m->rrrs_size[i]) +
         UNLESS(magnitude(v->rrrs_r_2_in_axes3_y) > TOLERANCE*m->rrrs_size[i]);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_rrrs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2565,132 +2611,15 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)26)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rrrs[SUMS_OF_dynamics*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[15*LEGS(LEGS_OF_rrrs)]
@@ -2754,103 +2683,13 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)20)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rrrs[SUMS_OF_M*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
@@ -2869,7 +2708,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2922,35 +2761,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2976,7 +2787,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -3020,7 +2831,7 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
@@ -3132,19 +2943,18 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_A_V_X(m, w, i, j, s, A, &v);
     stage_rrrs_legs_required(m, i, &v);
-    /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrrs-c) */
     const real rrrs_c_x = v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y +
         v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
     const real rrrs_c_y = v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y +
         v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
     const real rrrs_c_z = v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y +
         v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
     const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
     const real rrrs_R_a_t_3 = rrrs_c_x*v.rrrs_q_y - rrrs_c_y*v.rrrs_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rrrs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrrs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, rrrs_c_z);  /* R_t_z_of_legs */
@@ -3178,7 +2988,7 @@ INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3188,7 +2998,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3236,8 +3046,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrrs[14*LANES];
@@ -3302,7 +3112,8 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
@@ -3346,11 +3157,11 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
-    /* (rrrs-qd_1) rate of joint 1 */
+    /* (rrrs-qd_1) */
     o[0*count + k] = v.rrrs_qd_1;
-    /* (rrrs-qd_2) rate of joint 2 */
+    /* (rrrs-qd_2) */
     o[1*count + k] = v.rrrs_qd_2;
-    /* (rrrs-qd_3) rate of joint 3 */
+    /* (rrrs-qd_3) */
     o[2*count + k] = v.rrrs_qd_3;
     o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
@@ -3370,8 +3181,8 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
@@ -3416,11 +3227,11 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_A_V_X(m, w, i, j, s, A, &v);
-    /* (rrrs-qdd_1) acceleration of joint 1 */
+    /* (rrrs-qdd_1) */
     o[0*count + k] = v.rrrs_qdd_1;
-    /* (rrrs-qdd_2) acceleration of joint 2 */
+    /* (rrrs-qdd_2) */
     o[1*count + k] = v.rrrs_qdd_2;
-    /* (rrrs-qdd_3) acceleration of joint 3 */
+    /* (rrrs-qdd_3) */
     o[2*count + k] = v.rrrs_qdd_3;
     o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
@@ -3440,8 +3251,8 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t 
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
@@ -3507,11 +3318,11 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
     o[0*count + k] = rrrs_c_true_x;
     o[1*count + k] = rrrs_c_true_y;
     o[2*count + k] = rrrs_c_true_z;
-    /* (rrrs-w_1) reciprocal vector 1 */
+    /* (rrrs-w_1) */
     o[3*count + k] = v.rrrs_w_1_x;
     o[4*count + k] = v.rrrs_w_1_y;
     o[5*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
+    /* (rrrs-w_2) */
     o[6*count + k] = v.rrrs_w_2_x;
     o[7*count + k] = v.rrrs_w_2_y;
     o[8*count + k] = v.rrrs_w_2_z;
@@ -3559,7 +3370,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3574,7 +3385,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
+    /* (rrrs-h_2) */
     const real rrrs_h_2_in_axes1_z = v.rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] -
         m->rrrs_h_2_in_spec2_y[i]*v.rrrs_s_2;
     /* (potential) */
@@ -3655,7 +3466,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3666,8 +3477,7 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrrs-G) */
     const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
     const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
     const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
@@ -3721,7 +3531,7 @@ INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rrrs = sums[0*w + k];
     const real spread_ = root(spread_rrrs)*m->spread_t;
     /* (spread) */
@@ -3732,8 +3542,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rrrs[SUMS_OF_condition*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[17*LEGS(LEGS_OF_rrrs)]
@@ -3755,7 +3565,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int hybrid_3rrrs_M(const prepared *m, const real *X, real *M_out)
+NARROW int hybrid_3rrrs_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3778,7 +3588,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int hybrid_3rrrs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int hybrid_3rrrs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3802,7 +3612,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int hybrid_3rrrs_H(const prepared *m, const real *X, real *H_out)
+NARROW int hybrid_3rrrs_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3825,7 +3635,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int hybrid_3rrrs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3rrrs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3848,7 +3658,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int hybrid_3rrrs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int hybrid_3rrrs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3873,8 +3683,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int hybrid_3rrrs_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int hybrid_3rrrs_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3900,8 +3710,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int hybrid_3rrrs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int hybrid_3rrrs_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -4106,8 +3916,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {1, 2, 0, 4, 5, 3};
 static const real sizes_tau[] = {4.0, 4.0, 4.0, 1.0, 1.0, 1.0};
 
-int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -4156,8 +3966,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 
-int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out)
+NARROW int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -4213,8 +4023,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int hybrid_3rrrs_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int hybrid_3rrrs_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -4227,8 +4037,8 @@ int hybrid_3rrrs_complete_acceleration(const prepared *m, const real *X, const r
     return finished(NV, completed, completed_out, &why);
 }
 
-int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
@@ -4246,8 +4056,8 @@ int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, 
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int hybrid_3rrrs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int hybrid_3rrrs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -4265,7 +4075,8 @@ int hybrid_3rrrs_energy(const prepared *m, const real *X, const real *V, real *k
     return final_status(&why, 1, potential_out);
 }
 
-int hybrid_3rrrs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int hybrid_3rrrs_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4298,7 +4109,7 @@ int hybrid_3rrrs_condition(const prepared *m, const real *X, real *sigma_out, re
     return final_status(&why, NL, legs_out);
 }
 
-int hybrid_3rrrs_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int hybrid_3rrrs_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -4332,8 +4143,8 @@ int hybrid_3rrrs_manipulability(const prepared *m, const real *X, real *measure_
     return final_status(&why, 1, isotropy_out);
 }
 
-int hybrid_3rrrs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int hybrid_3rrrs_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -4366,7 +4177,7 @@ int hybrid_3rrrs_singularity_distance(const prepared *m, const real *X, real *ac
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2, 3, 4, 5};
@@ -4387,7 +4198,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4444,8 +4255,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int hybrid_3rrrs_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
-    real *X_out)
+NARROW int hybrid_3rrrs_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4455,7 +4266,7 @@ int hybrid_3rrrs_forward_kinematics(const prepared *m, const real *q_actuated, c
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4471,7 +4282,8 @@ int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, re
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4482,7 +4294,7 @@ int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real 
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4498,7 +4310,7 @@ int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_o
     return final_status(&why, NJ, margins_out);
 }
 
-int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4512,7 +4324,7 @@ int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_ou
     return finished(1, within, within_out, &why);
 }
 
-int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -4523,7 +4335,8 @@ int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_ou
     return finished(NU, q, q_out, &why);
 }
 
-int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -4534,8 +4347,8 @@ int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V,
     return finished(NU, qd, qd_out, &why);
 }
 
-int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -4546,8 +4359,8 @@ int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const 
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int hybrid_3rrrs_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int hybrid_3rrrs_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4559,7 +4372,7 @@ int hybrid_3rrrs_power(const prepared *m, const real *X, const real *V, const re
     return finished(1, power, power_out, &why);
 }
 
-int hybrid_3rrrs_rotation(const real *X, real *R_out)
+NARROW int hybrid_3rrrs_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -4570,19 +4383,18 @@ int hybrid_3rrrs_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int hybrid_3rrrs_pose(const real *t, const real *R, real *X_out)
+NARROW int hybrid_3rrrs_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3rrrs_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int hybrid_3rrrs_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -4595,19 +4407,18 @@ int hybrid_3rrrs_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int hybrid_3rrrs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int hybrid_3rrrs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -4623,7 +4434,7 @@ int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
+NARROW int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -4639,7 +4450,7 @@ int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int hybrid_3rrrs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int hybrid_3rrrs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && HYBRID_3RRRS_REDUNDANT_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3RRRS_REDUNDANT_LANES >= 4 && VECTORS_OF(HYBRID_3RRRS_REDUNDANT_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -274,11 +291,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -287,10 +306,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -392,11 +412,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -722,8 +739,9 @@ static int acceptable(const hybrid_3rrrs_redundant_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model)
 {
@@ -749,9 +767,9 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     real b_c_rrrs_in_platform_y = 0;
     real b_c_rrrs_in_platform_z = 0;
     real legs_size_rrrs = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -777,36 +795,33 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
     for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         const size_t own = leg;
-        const real rrrrs_base_point_x = params->rrrrs_base_point[own][0];
-        const real rrrrs_base_point_y = params->rrrrs_base_point[own][1];
-        const real rrrrs_base_point_z = params->rrrrs_base_point[own][2];
-        const real rrrrs_base_frame_xx = params->rrrrs_base_frame[own][0][0];
-        const real rrrrs_base_frame_xy = params->rrrrs_base_frame[own][0][1];
-        const real rrrrs_base_frame_xz = params->rrrrs_base_frame[own][0][2];
-        const real rrrrs_base_frame_yx = params->rrrrs_base_frame[own][1][0];
-        const real rrrrs_base_frame_yy = params->rrrrs_base_frame[own][1][1];
-        const real rrrrs_base_frame_yz = params->rrrrs_base_frame[own][1][2];
-        const real rrrrs_base_frame_zx = params->rrrrs_base_frame[own][2][0];
-        const real rrrrs_base_frame_zy = params->rrrrs_base_frame[own][2][1];
-        const real rrrrs_base_frame_zz = params->rrrrs_base_frame[own][2][2];
-        const real rrrrs_platform_point_x = params->rrrrs_platform_point[own][0];
-        const real rrrrs_platform_point_y = params->rrrrs_platform_point[own][1];
-        const real rrrrs_platform_point_z = params->rrrrs_platform_point[own][2];
-        const real rrrrs_joint2_offset_x = params->rrrrs_joint2_offset[own][0];
-        const real rrrrs_joint3_offset_x = params->rrrrs_joint3_offset[own][0];
-        const real rrrrs_joint4_offset_x = params->rrrrs_joint4_offset[own][0];
-        const real rrrrs_platform_joint_offset_x = params->rrrrs_platform_joint_offset[own][0];
-        const real rrrrs_link1_mass = params->rrrrs_link1_mass[own];
+        KEEP_OF_LEG(rrrrs_base_point_x, params->rrrrs_base_point[own][0]);
+        KEEP_OF_LEG(rrrrs_base_point_y, params->rrrrs_base_point[own][1]);
+        KEEP_OF_LEG(rrrrs_base_point_z, params->rrrrs_base_point[own][2]);
+        KEEP_OF_LEG(rrrrs_base_frame_xx, params->rrrrs_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrrrs_base_frame_xy, params->rrrrs_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrrrs_base_frame_xz, params->rrrrs_base_frame[own][0][2]);
+        KEEP_OF_LEG(rrrrs_base_frame_yx, params->rrrrs_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrrrs_base_frame_yy, params->rrrrs_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrrrs_base_frame_yz, params->rrrrs_base_frame[own][1][2]);
+        KEEP_OF_LEG(rrrrs_base_frame_zx, params->rrrrs_base_frame[own][2][0]);
+        KEEP_OF_LEG(rrrrs_base_frame_zy, params->rrrrs_base_frame[own][2][1]);
+        KEEP_OF_LEG(rrrrs_base_frame_zz, params->rrrrs_base_frame[own][2][2]);
+        KEEP_OF_LEG(rrrrs_platform_point_x, params->rrrrs_platform_point[own][0]);
+        KEEP_OF_LEG(rrrrs_platform_point_y, params->rrrrs_platform_point[own][1]);
+        KEEP_OF_LEG(rrrrs_platform_point_z, params->rrrrs_platform_point[own][2]);
+        KEEP_OF_LEG(rrrrs_joint2_offset_x, params->rrrrs_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrrrs_joint3_offset_x, params->rrrrs_joint3_offset[own][0]);
+        KEEP_OF_LEG(rrrrs_joint4_offset_x, params->rrrrs_joint4_offset[own][0]);
+        KEEP_OF_LEG(rrrrs_platform_joint_offset_x, params->rrrrs_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrrrs_link1_mass, params->rrrrs_link1_mass[own]);
         const real rrrrs_link1_centre_of_mass_x = params->rrrrs_link1_centre_of_mass[own][0];
         const real rrrrs_link1_centre_of_mass_y = params->rrrrs_link1_centre_of_mass[own][1];
         const real rrrrs_link1_centre_of_mass_z = params->rrrrs_link1_centre_of_mass[own][2];
         const real rrrrs_link1_inertia_xx = params->rrrrs_link1_inertia[own][0][0];
-        const real rrrrs_link2_mass = params->rrrrs_link2_mass[own];
+        KEEP_OF_LEG(rrrrs_link2_mass, params->rrrrs_link2_mass[own]);
         const real rrrrs_link2_centre_of_mass_x = params->rrrrs_link2_centre_of_mass[own][0];
         const real rrrrs_link2_centre_of_mass_y = params->rrrrs_link2_centre_of_mass[own][1];
         const real rrrrs_link2_centre_of_mass_z = params->rrrrs_link2_centre_of_mass[own][2];
@@ -816,7 +831,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrrs_link2_inertia_yy = params->rrrrs_link2_inertia[own][1][1];
         const real rrrrs_link2_inertia_yz = params->rrrrs_link2_inertia[own][1][2];
         const real rrrrs_link2_inertia_zz = params->rrrrs_link2_inertia[own][2][2];
-        const real rrrrs_link3_mass = params->rrrrs_link3_mass[own];
+        KEEP_OF_LEG(rrrrs_link3_mass, params->rrrrs_link3_mass[own]);
         const real rrrrs_link3_centre_of_mass_x = params->rrrrs_link3_centre_of_mass[own][0];
         const real rrrrs_link3_centre_of_mass_y = params->rrrrs_link3_centre_of_mass[own][1];
         const real rrrrs_link3_centre_of_mass_z = params->rrrrs_link3_centre_of_mass[own][2];
@@ -826,7 +841,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrrs_link3_inertia_yy = params->rrrrs_link3_inertia[own][1][1];
         const real rrrrs_link3_inertia_yz = params->rrrrs_link3_inertia[own][1][2];
         const real rrrrs_link3_inertia_zz = params->rrrrs_link3_inertia[own][2][2];
-        const real rrrrs_link4_mass = params->rrrrs_link4_mass[own];
+        KEEP_OF_LEG(rrrrs_link4_mass, params->rrrrs_link4_mass[own]);
         const real rrrrs_link4_centre_of_mass_x = params->rrrrs_link4_centre_of_mass[own][0];
         const real rrrrs_link4_centre_of_mass_y = params->rrrrs_link4_centre_of_mass[own][1];
         const real rrrrs_link4_centre_of_mass_z = params->rrrrs_link4_centre_of_mass[own][2];
@@ -837,160 +852,160 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrrs_link4_inertia_yz = params->rrrrs_link4_inertia[own][1][2];
         const real rrrrs_link4_inertia_zz = params->rrrrs_link4_inertia[own][2][2];
         static const signed char signs_rrrrs_branch_1[] = {1};
-        const real rrrrs_branch_1 = signs_rrrrs_branch_1[own];
+        KEEP_OF_LEG(rrrrs_branch_1, signs_rrrrs_branch_1[own]);
         static const signed char signs_rrrrs_branch_3[] = {1};
-        const real rrrrs_branch_3 = signs_rrrrs_branch_3[own];
+        KEEP_OF_LEG(rrrrs_branch_3, signs_rrrrs_branch_3[own]);
         /* (rrrrs-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrrrs_size_t = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x;
         const real rrrrs_size_t_2 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x;
-        const real rrrrs_size_t_3 = R(6.696672622239999e-07) +
-            rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + rrrrs_size_t + rrrrs_size_t_2;
-        const real rrrrs_size = root(rrrrs_size_t_3);
+        KEEP_OF_LEG(rrrrs_size_t_3, R(6.696672622239999e-07) +
+            rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + rrrrs_size_t + rrrrs_size_t_2);
+        KEEP_OF_LEG(rrrrs_size, root(rrrrs_size_t_3));
         /* (rrrrs-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrrrs_h_1_in_spec1_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass;
-        const real rrrrs_h_1_in_spec1_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass;
-        const real rrrrs_h_1_in_spec1_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass;
+        KEEP_OF_LEG(rrrrs_h_1_in_spec1_x, rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass);
+        KEEP_OF_LEG(rrrrs_h_1_in_spec1_y, rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass);
+        KEEP_OF_LEG(rrrrs_h_1_in_spec1_z, rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass);
         /* (rrrrs-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrrrs_J_1_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x;
         const real rrrrs_J_1_t_2 = rrrrs_J_1_t +
             rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
             rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z;
-        const real rrrrs_J_1_in_spec1_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(rrrrs_J_1_t
-            - rrrrs_J_1_t_2);
+        KEEP_OF_LEG(rrrrs_J_1_in_spec1_xx, rrrrs_link1_inertia_xx - rrrrs_link1_mass*(rrrrs_J_1_t
+            - rrrrs_J_1_t_2));
         /* (rrrrs-h_2) first moment of link 2 about the origin of link 2 */
-        const real rrrrs_h_2_in_spec2_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass;
-        const real rrrrs_h_2_in_spec2_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
-        const real rrrrs_h_2_in_spec2_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
+        KEEP_OF_LEG(rrrrs_h_2_in_spec2_x, rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass);
+        KEEP_OF_LEG(rrrrs_h_2_in_spec2_y, rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass);
+        KEEP_OF_LEG(rrrrs_h_2_in_spec2_z, rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass);
         /* (rrrrs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real rrrrs_J_2_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x;
         const real rrrrs_J_2_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y;
         const real rrrrs_J_2_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z;
         const real rrrrs_J_2_t_4 = rrrrs_J_2_t + rrrrs_J_2_t_2 + rrrrs_J_2_t_3;
-        const real rrrrs_J_2_in_spec2_xx = rrrrs_link2_inertia_xx - rrrrs_link2_mass*(rrrrs_J_2_t
-            - rrrrs_J_2_t_4);
-        const real rrrrs_J_2_in_spec2_xy = rrrrs_link2_inertia_xy -
-            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
-        const real rrrrs_J_2_in_spec2_xz = rrrrs_link2_inertia_xz -
-            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        const real rrrrs_J_2_in_spec2_yy = rrrrs_link2_inertia_yy -
-            rrrrs_link2_mass*(rrrrs_J_2_t_2 - rrrrs_J_2_t_4);
-        const real rrrrs_J_2_in_spec2_yz = rrrrs_link2_inertia_yz -
-            rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        const real rrrrs_J_2_in_spec2_zz = rrrrs_link2_inertia_zz -
-            rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xx, rrrrs_link2_inertia_xx - rrrrs_link2_mass*(rrrrs_J_2_t
+            - rrrrs_J_2_t_4));
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xy, rrrrs_link2_inertia_xy -
+            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xz, rrrrs_link2_inertia_xz -
+            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_yy, rrrrs_link2_inertia_yy -
+            rrrrs_link2_mass*(rrrrs_J_2_t_2 - rrrrs_J_2_t_4));
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_yz, rrrrs_link2_inertia_yz -
+            rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_zz, rrrrs_link2_inertia_zz -
+            rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4));
         /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
-        const real rrrrs_h_3_in_spec3_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass;
-        const real rrrrs_h_3_in_spec3_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
-        const real rrrrs_h_3_in_spec3_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
+        KEEP_OF_LEG(rrrrs_h_3_in_spec3_x, rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass);
+        KEEP_OF_LEG(rrrrs_h_3_in_spec3_y, rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass);
+        KEEP_OF_LEG(rrrrs_h_3_in_spec3_z, rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass);
         /* (rrrrs-J_3) inertia tensor of link 3 about the origin of link 3 */
         const real rrrrs_J_3_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x;
         const real rrrrs_J_3_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y;
         const real rrrrs_J_3_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z;
         const real rrrrs_J_3_t_4 = rrrrs_J_3_t + rrrrs_J_3_t_2 + rrrrs_J_3_t_3;
-        const real rrrrs_J_3_in_spec3_xx = rrrrs_link3_inertia_xx - rrrrs_link3_mass*(rrrrs_J_3_t
-            - rrrrs_J_3_t_4);
-        const real rrrrs_J_3_in_spec3_xy = rrrrs_link3_inertia_xy -
-            rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
-        const real rrrrs_J_3_in_spec3_xz = rrrrs_link3_inertia_xz -
-            rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
-        const real rrrrs_J_3_in_spec3_yy = rrrrs_link3_inertia_yy -
-            rrrrs_link3_mass*(rrrrs_J_3_t_2 - rrrrs_J_3_t_4);
-        const real rrrrs_J_3_in_spec3_yz = rrrrs_link3_inertia_yz -
-            rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xx, rrrrs_link3_inertia_xx - rrrrs_link3_mass*(rrrrs_J_3_t
+            - rrrrs_J_3_t_4));
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xy, rrrrs_link3_inertia_xy -
+            rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xz, rrrrs_link3_inertia_xz -
+            rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_yy, rrrrs_link3_inertia_yy -
+            rrrrs_link3_mass*(rrrrs_J_3_t_2 - rrrrs_J_3_t_4));
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_yz, rrrrs_link3_inertia_yz -
+            rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass);
         const real rrrrs_J_3_in_spec3_zz = rrrrs_link3_inertia_zz -
             rrrrs_link3_mass*(rrrrs_J_3_t_3 - rrrrs_J_3_t_4);
         /* (rrrrs-rho_tip_4) connection point to the centre of mass of link 4 */
         const real rrrrs_rho_tip_4_in_spec4_x = rrrrs_link4_centre_of_mass_x -
             rrrrs_platform_joint_offset_x;
         /* (rrrrs-h_4) first moment of link 4 about the connection point */
-        const real rrrrs_h_4_in_spec4_x = rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x;
-        const real rrrrs_h_4_in_spec4_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass;
-        const real rrrrs_h_4_in_spec4_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
+        KEEP_OF_LEG(rrrrs_h_4_in_spec4_x, rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x);
+        KEEP_OF_LEG(rrrrs_h_4_in_spec4_y, rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass);
+        KEEP_OF_LEG(rrrrs_h_4_in_spec4_z, rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass);
         /* (rrrrs-J_4) inertia tensor of link 4 about the connection point */
         const real rrrrs_J_4_t = rrrrs_rho_tip_4_in_spec4_x*rrrrs_rho_tip_4_in_spec4_x;
         const real rrrrs_J_4_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y;
         const real rrrrs_J_4_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z;
         const real rrrrs_J_4_t_4 = rrrrs_J_4_t + rrrrs_J_4_t_2 + rrrrs_J_4_t_3;
-        const real rrrrs_J_4_in_spec4_xx = rrrrs_link4_inertia_xx - rrrrs_link4_mass*(rrrrs_J_4_t
-            - rrrrs_J_4_t_4);
-        const real rrrrs_J_4_in_spec4_xy = rrrrs_link4_inertia_xy -
-            rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x;
-        const real rrrrs_J_4_in_spec4_xz = rrrrs_link4_inertia_xz -
-            rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x;
-        const real rrrrs_J_4_in_spec4_yy = rrrrs_link4_inertia_yy -
-            rrrrs_link4_mass*(rrrrs_J_4_t_2 - rrrrs_J_4_t_4);
-        const real rrrrs_J_4_in_spec4_yz = rrrrs_link4_inertia_yz -
-            rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
-        const real rrrrs_J_4_in_spec4_zz = rrrrs_link4_inertia_zz -
-            rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xx, rrrrs_link4_inertia_xx - rrrrs_link4_mass*(rrrrs_J_4_t
+            - rrrrs_J_4_t_4));
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xy, rrrrs_link4_inertia_xy -
+            rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xz, rrrrs_link4_inertia_xz -
+            rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_yy, rrrrs_link4_inertia_yy -
+            rrrrs_link4_mass*(rrrrs_J_4_t_2 - rrrrs_J_4_t_4));
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_yz, rrrrs_link4_inertia_yz -
+            rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_zz, rrrrs_link4_inertia_zz -
+            rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4));
         /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 3 */
-        const real rrrrs_Kd_3_t = R(0.5)*rrrrs_size_t;
-        const real rrrrs_Kd_3_t_2 = R(0.5)*rrrrs_size_t_2;
+        KEEP_OF_LEG(rrrrs_Kd_3_t, R(0.5)*rrrrs_size_t);
+        KEEP_OF_LEG(rrrrs_Kd_3_t_2, R(0.5)*rrrrs_size_t_2);
         /* (rrrrs-rho2_3) squared amplitude */
-        const real rrrrs_rho2_3_t = rrrrs_size*rrrrs_size*rrrrs_size_t_3;
+        KEEP_OF_LEG(rrrrs_rho2_3_t, rrrrs_size*rrrrs_size*rrrrs_size_t_3);
         /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
-        const real inv_rrrrs_size_t = 1/rrrrs_size_t;
+        KEEP_OF_LEG(inv_rrrrs_size_t, 1/rrrrs_size_t);
         /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_rrrrs_size_t_2 = 1/rrrrs_size_t_2;
+        KEEP_OF_LEG(inv_rrrrs_size_t_2, 1/rrrrs_size_t_2);
         /* (rrrrs-w_4) reciprocal vector 3 */
-        const real rrrrs_w_4_in_axes4_y = 1/rrrrs_platform_joint_offset_x;
+        KEEP_OF_LEG(rrrrs_w_4_in_axes4_y, 1/rrrrs_platform_joint_offset_x);
         /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real rrrrs_acc_3_t = gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy +
-            gravity_z*rrrrs_base_frame_zy;
-        const real rrrrs_acc_3_t_2 = gravity_x*rrrrs_base_frame_xz + gravity_y*rrrrs_base_frame_yz
-            + gravity_z*rrrrs_base_frame_zz;
-        const real rrrrs_g_in_axes1_z = gravity_x*rrrrs_base_frame_xx +
-            gravity_y*rrrrs_base_frame_yx + gravity_z*rrrrs_base_frame_zx;
+        KEEP_OF_LEG(rrrrs_acc_3_t, gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy +
+            gravity_z*rrrrs_base_frame_zy);
+        KEEP_OF_LEG(rrrrs_acc_3_t_2, gravity_x*rrrrs_base_frame_xz + gravity_y*rrrrs_base_frame_yz
+            + gravity_z*rrrrs_base_frame_zz);
+        KEEP_OF_LEG(rrrrs_g_in_axes1_z, gravity_x*rrrrs_base_frame_xx +
+            gravity_y*rrrrs_base_frame_yx + gravity_z*rrrrs_base_frame_zx);
         /* (rrrrs-d_phi_4) coefficient of the acceleration in: inertia force of link 4 from its turning
            about its reference point */
-        const real rrrrs_d_phi_4_t = rrrrs_h_4_in_spec4_y*rrrrs_w_4_in_axes4_y;
+        KEEP_OF_LEG(rrrrs_d_phi_4_t, rrrrs_h_4_in_spec4_y*rrrrs_w_4_in_axes4_y);
         /* (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
            about the connection point */
-        const real rrrrs_Jc_3_in_axes3_zz = rrrrs_J_3_in_spec3_zz + rrrrs_J_4_in_spec4_zz;
+        KEEP_OF_LEG(rrrrs_Jc_3_in_axes3_zz, rrrrs_J_3_in_spec3_zz + rrrrs_J_4_in_spec4_zz);
         /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real rrrrs_Jc_2_t = R(0.5)*rrrrs_joint3_offset_x*rrrrs_link3_mass;
+        KEEP_OF_LEG(rrrrs_Jc_2_t, R(0.5)*rrrrs_joint3_offset_x*rrrrs_link3_mass);
         /* (rrrrs-Sigma_4) second moment of mass of the links that turn with link 4 */
         const real rrrrs_Sigma_4_t = rrrrs_J_4_in_spec4_xx + rrrrs_J_4_in_spec4_yy +
             rrrrs_J_4_in_spec4_zz;
         const real rrrrs_Sigma_4_t_2 = R(0.5)*rrrrs_Sigma_4_t;
-        const real rrrrs_Sigma_4_in_axes4_xx = rrrrs_Sigma_4_t_2 - rrrrs_J_4_in_spec4_xx;
-        const real rrrrs_Sigma_4_in_axes4_yy = rrrrs_Sigma_4_t_2 - rrrrs_J_4_in_spec4_yy;
-        const real rrrrs_Sigma_4_in_axes4_zz = rrrrs_Sigma_4_t_2 - rrrrs_J_4_in_spec4_zz;
+        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_t_2 - rrrrs_J_4_in_spec4_xx);
+        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_t_2 - rrrrs_J_4_in_spec4_yy);
+        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_zz, rrrrs_Sigma_4_t_2 - rrrrs_J_4_in_spec4_zz);
         /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
            inertia and weight */
-        const real rrrrs_d_Gamma_4_t = rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y;
-        const real rrrrs_d_Gamma_4_in_axes4_y = rrrrs_d_Gamma_4_t + rrrrs_h_4_in_spec4_x;
+        KEEP_OF_LEG(rrrrs_d_Gamma_4_t, rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y);
+        KEEP_OF_LEG(rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t + rrrrs_h_4_in_spec4_x);
         /* (rrrrs-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real rrrrs_Sigma_3_t = rrrrs_J_3_in_spec3_xx + rrrrs_J_3_in_spec3_yy +
             rrrrs_J_3_in_spec3_zz;
         const real rrrrs_Sigma_3_t_2 = R(0.5)*rrrrs_Sigma_3_t;
-        const real rrrrs_Sigma_3_in_axes3_xx = rrrrs_Sigma_3_t_2 - rrrrs_J_3_in_spec3_xx;
-        const real rrrrs_Sigma_3_in_axes3_yy = rrrrs_Sigma_3_t_2 - rrrrs_J_3_in_spec3_yy;
-        const real rrrrs_Sigma_3_in_axes3_zz = rrrrs_Sigma_3_t_2 - rrrrs_J_3_in_spec3_zz;
+        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_t_2 - rrrrs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_t_2 - rrrrs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_3_t_2 - rrrrs_J_3_in_spec3_zz);
         /* (rrrrs-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real rrrrs_Sigma_2_t = rrrrs_J_2_in_spec2_xx + rrrrs_J_2_in_spec2_yy +
             rrrrs_J_2_in_spec2_zz;
         const real rrrrs_Sigma_2_t_2 = R(0.5)*rrrrs_Sigma_2_t;
-        const real rrrrs_Sigma_2_in_axes2_xx = rrrrs_Sigma_2_t_2 - rrrrs_J_2_in_spec2_xx;
-        const real rrrrs_Sigma_2_in_axes2_yy = rrrrs_Sigma_2_t_2 - rrrrs_J_2_in_spec2_yy;
-        const real rrrrs_Sigma_2_in_axes2_zz = rrrrs_Sigma_2_t_2 - rrrrs_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_t_2 - rrrrs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_t_2 - rrrrs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_2_t_2 - rrrrs_J_2_in_spec2_zz);
         /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrrrs_size_t_3 = 1/rrrrs_size_t_3;
-        const real inv_rrrrs_rho2_3_t = 1/rrrrs_rho2_3_t;
-        const real inv_rrrrs_size = 1/rrrrs_size;
+        KEEP_OF_LEG(inv_rrrrs_size_t_3, 1/rrrrs_size_t_3);
+        KEEP_OF_LEG(inv_rrrrs_rho2_3_t, 1/rrrrs_rho2_3_t);
+        KEEP_OF_LEG(inv_rrrrs_size, 1/rrrrs_size);
         /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all degrees of freedom */
-        const real rrrrs_d_G_in_axes4_yy = rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_y;
+        KEEP_OF_LEG(rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_y);
         /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrrrs_d_c_in_axes4_yy = -rrrrs_d_G_in_axes4_yy -
-            rrrrs_h_4_in_spec4_x*rrrrs_w_4_in_axes4_y;
+        KEEP_OF_LEG(rrrrs_d_c_in_axes4_yy, -rrrrs_d_G_in_axes4_yy -
+            rrrrs_h_4_in_spec4_x*rrrrs_w_4_in_axes4_y);
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 2 */
-        const real rrrrs_d_P_2_t = rrrrs_h_3_in_spec3_z*rrrrs_joint3_offset_x;
+        KEEP_OF_LEG(rrrrs_d_P_2_t, rrrrs_h_3_in_spec3_z*rrrrs_joint3_offset_x);
         /* (h_star) */
         const real rrrrs_h_star_t = rrrrs_link4_mass*rrrrs_platform_point_x;
         const real rrrrs_h_star_t_2 = rrrrs_link4_mass*rrrrs_platform_point_y;
@@ -1010,106 +1025,15 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z;
         const real rrrrs_J_star_t_10 = rrrrs_link4_mass*(rrrrs_J_star_t_3 - rrrrs_J_star_t_4);
         /* (potential) potential energy */
-        const real rrrrs_potential_t = rrrrs_base_frame_xy*rrrrs_base_point_x +
-            rrrrs_base_frame_yy*rrrrs_base_point_y + rrrrs_base_frame_zy*rrrrs_base_point_z;
-        const real rrrrs_potential_t_2 = rrrrs_base_frame_xz*rrrrs_base_point_x +
-            rrrrs_base_frame_yz*rrrrs_base_point_y + rrrrs_base_frame_zz*rrrrs_base_point_z;
-        const real rrrrs_b_in_spec1_x = rrrrs_base_frame_xx*rrrrs_base_point_x +
-            rrrrs_base_frame_yx*rrrrs_base_point_y + rrrrs_base_frame_zx*rrrrs_base_point_z;
-        const real rrrrs_potential_t_3 = rrrrs_b_in_spec1_x*rrrrs_link1_mass;
-        const real rrrrs_potential_t_4 = rrrrs_link2_mass*(rrrrs_b_in_spec1_x +
-            rrrrs_joint2_offset_x);
-        KEEP_OF_LEG(inv_rrrrs_rho2_3_t);
-        KEEP_OF_LEG(inv_rrrrs_size);
-        KEEP_OF_LEG(inv_rrrrs_size_t);
-        KEEP_OF_LEG(inv_rrrrs_size_t_2);
-        KEEP_OF_LEG(inv_rrrrs_size_t_3);
-        KEEP_OF_LEG(rrrrs_J_1_in_spec1_xx);
-        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xx);
-        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xy);
-        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xz);
-        KEEP_OF_LEG(rrrrs_J_2_in_spec2_yy);
-        KEEP_OF_LEG(rrrrs_J_2_in_spec2_yz);
-        KEEP_OF_LEG(rrrrs_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xx);
-        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xy);
-        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xz);
-        KEEP_OF_LEG(rrrrs_J_3_in_spec3_yy);
-        KEEP_OF_LEG(rrrrs_J_3_in_spec3_yz);
-        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xx);
-        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xy);
-        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xz);
-        KEEP_OF_LEG(rrrrs_J_4_in_spec4_yy);
-        KEEP_OF_LEG(rrrrs_J_4_in_spec4_yz);
-        KEEP_OF_LEG(rrrrs_J_4_in_spec4_zz);
-        KEEP_OF_LEG(rrrrs_Jc_2_t);
-        KEEP_OF_LEG(rrrrs_Jc_3_in_axes3_zz);
-        KEEP_OF_LEG(rrrrs_Kd_3_t);
-        KEEP_OF_LEG(rrrrs_Kd_3_t_2);
-        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_xx);
-        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_yy);
-        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_zz);
-        KEEP_OF_LEG(rrrrs_acc_3_t);
-        KEEP_OF_LEG(rrrrs_acc_3_t_2);
-        KEEP_OF_LEG(rrrrs_b_in_spec1_x);
-        KEEP_OF_LEG(rrrrs_base_frame_xx);
-        KEEP_OF_LEG(rrrrs_base_frame_xy);
-        KEEP_OF_LEG(rrrrs_base_frame_xz);
-        KEEP_OF_LEG(rrrrs_base_frame_yx);
-        KEEP_OF_LEG(rrrrs_base_frame_yy);
-        KEEP_OF_LEG(rrrrs_base_frame_yz);
-        KEEP_OF_LEG(rrrrs_base_frame_zx);
-        KEEP_OF_LEG(rrrrs_base_frame_zy);
-        KEEP_OF_LEG(rrrrs_base_frame_zz);
-        KEEP_OF_LEG(rrrrs_base_point_x);
-        KEEP_OF_LEG(rrrrs_base_point_y);
-        KEEP_OF_LEG(rrrrs_base_point_z);
-        KEEP_OF_LEG(rrrrs_branch_1);
-        KEEP_OF_LEG(rrrrs_branch_3);
-        KEEP_OF_LEG(rrrrs_d_G_in_axes4_yy);
-        KEEP_OF_LEG(rrrrs_d_Gamma_4_in_axes4_y);
-        KEEP_OF_LEG(rrrrs_d_Gamma_4_t);
-        KEEP_OF_LEG(rrrrs_d_P_2_t);
-        KEEP_OF_LEG(rrrrs_d_c_in_axes4_yy);
-        KEEP_OF_LEG(rrrrs_d_phi_4_t);
-        KEEP_OF_LEG(rrrrs_g_in_axes1_z);
-        KEEP_OF_LEG(rrrrs_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrrrs_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrrrs_h_1_in_spec1_z);
-        KEEP_OF_LEG(rrrrs_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrrrs_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrrrs_h_2_in_spec2_z);
-        KEEP_OF_LEG(rrrrs_h_3_in_spec3_x);
-        KEEP_OF_LEG(rrrrs_h_3_in_spec3_y);
-        KEEP_OF_LEG(rrrrs_h_3_in_spec3_z);
-        KEEP_OF_LEG(rrrrs_h_4_in_spec4_x);
-        KEEP_OF_LEG(rrrrs_h_4_in_spec4_y);
-        KEEP_OF_LEG(rrrrs_h_4_in_spec4_z);
-        KEEP_OF_LEG(rrrrs_joint2_offset_x);
-        KEEP_OF_LEG(rrrrs_joint3_offset_x);
-        KEEP_OF_LEG(rrrrs_joint4_offset_x);
-        KEEP_OF_LEG(rrrrs_link1_mass);
-        KEEP_OF_LEG(rrrrs_link2_mass);
-        KEEP_OF_LEG(rrrrs_link3_mass);
-        KEEP_OF_LEG(rrrrs_link4_mass);
-        KEEP_OF_LEG(rrrrs_platform_joint_offset_x);
-        KEEP_OF_LEG(rrrrs_platform_point_x);
-        KEEP_OF_LEG(rrrrs_platform_point_y);
-        KEEP_OF_LEG(rrrrs_platform_point_z);
-        KEEP_OF_LEG(rrrrs_potential_t);
-        KEEP_OF_LEG(rrrrs_potential_t_2);
-        KEEP_OF_LEG(rrrrs_potential_t_3);
-        KEEP_OF_LEG(rrrrs_potential_t_4);
-        KEEP_OF_LEG(rrrrs_rho2_3_t);
-        KEEP_OF_LEG(rrrrs_size);
-        KEEP_OF_LEG(rrrrs_size_t_3);
-        KEEP_OF_LEG(rrrrs_w_4_in_axes4_y);
+        KEEP_OF_LEG(rrrrs_potential_t, rrrrs_base_frame_xy*rrrrs_base_point_x +
+            rrrrs_base_frame_yy*rrrrs_base_point_y + rrrrs_base_frame_zy*rrrrs_base_point_z);
+        KEEP_OF_LEG(rrrrs_potential_t_2, rrrrs_base_frame_xz*rrrrs_base_point_x +
+            rrrrs_base_frame_yz*rrrrs_base_point_y + rrrrs_base_frame_zz*rrrrs_base_point_z);
+        KEEP_OF_LEG(rrrrs_b_in_spec1_x, rrrrs_base_frame_xx*rrrrs_base_point_x +
+            rrrrs_base_frame_yx*rrrrs_base_point_y + rrrrs_base_frame_zx*rrrrs_base_point_z);
+        KEEP_OF_LEG(rrrrs_potential_t_3, rrrrs_b_in_spec1_x*rrrrs_link1_mass);
+        KEEP_OF_LEG(rrrrs_potential_t_4, rrrrs_link2_mass*(rrrrs_b_in_spec1_x +
+            rrrrs_joint2_offset_x));
         m_star_of_legs += rrrrs_link4_mass;
         h_star_in_platform_x_of_legs += rrrrs_h_star_t;
         h_star_in_platform_y_of_legs += rrrrs_h_star_t_2;
@@ -1127,30 +1051,30 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     }
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         const size_t own = leg;
-        const real rrrs_base_point_x = params->rrrs_base_point[own][0];
-        const real rrrs_base_point_y = params->rrrs_base_point[own][1];
-        const real rrrs_base_point_z = params->rrrs_base_point[own][2];
-        const real rrrs_base_frame_xx = params->rrrs_base_frame[own][0][0];
-        const real rrrs_base_frame_xy = params->rrrs_base_frame[own][0][1];
-        const real rrrs_base_frame_xz = params->rrrs_base_frame[own][0][2];
-        const real rrrs_base_frame_yx = params->rrrs_base_frame[own][1][0];
-        const real rrrs_base_frame_yy = params->rrrs_base_frame[own][1][1];
-        const real rrrs_base_frame_yz = params->rrrs_base_frame[own][1][2];
-        const real rrrs_base_frame_zx = params->rrrs_base_frame[own][2][0];
-        const real rrrs_base_frame_zy = params->rrrs_base_frame[own][2][1];
-        const real rrrs_base_frame_zz = params->rrrs_base_frame[own][2][2];
-        const real rrrs_platform_point_x = params->rrrs_platform_point[own][0];
-        const real rrrs_platform_point_y = params->rrrs_platform_point[own][1];
-        const real rrrs_platform_point_z = params->rrrs_platform_point[own][2];
-        const real rrrs_joint2_offset_x = params->rrrs_joint2_offset[own][0];
-        const real rrrs_joint3_offset_x = params->rrrs_joint3_offset[own][0];
-        const real rrrs_platform_joint_offset_x = params->rrrs_platform_joint_offset[own][0];
-        const real rrrs_link1_mass = params->rrrs_link1_mass[own];
+        KEEP_OF_LEG(rrrs_base_point_x, params->rrrs_base_point[own][0]);
+        KEEP_OF_LEG(rrrs_base_point_y, params->rrrs_base_point[own][1]);
+        KEEP_OF_LEG(rrrs_base_point_z, params->rrrs_base_point[own][2]);
+        KEEP_OF_LEG(rrrs_base_frame_xx, params->rrrs_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrrs_base_frame_xy, params->rrrs_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrrs_base_frame_xz, params->rrrs_base_frame[own][0][2]);
+        KEEP_OF_LEG(rrrs_base_frame_yx, params->rrrs_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrrs_base_frame_yy, params->rrrs_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrrs_base_frame_yz, params->rrrs_base_frame[own][1][2]);
+        KEEP_OF_LEG(rrrs_base_frame_zx, params->rrrs_base_frame[own][2][0]);
+        KEEP_OF_LEG(rrrs_base_frame_zy, params->rrrs_base_frame[own][2][1]);
+        KEEP_OF_LEG(rrrs_base_frame_zz, params->rrrs_base_frame[own][2][2]);
+        KEEP_OF_LEG(rrrs_platform_point_x, params->rrrs_platform_point[own][0]);
+        KEEP_OF_LEG(rrrs_platform_point_y, params->rrrs_platform_point[own][1]);
+        KEEP_OF_LEG(rrrs_platform_point_z, params->rrrs_platform_point[own][2]);
+        KEEP_OF_LEG(rrrs_joint2_offset_x, params->rrrs_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrrs_joint3_offset_x, params->rrrs_joint3_offset[own][0]);
+        KEEP_OF_LEG(rrrs_platform_joint_offset_x, params->rrrs_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrrs_link1_mass, params->rrrs_link1_mass[own]);
         const real rrrs_link1_centre_of_mass_x = params->rrrs_link1_centre_of_mass[own][0];
         const real rrrs_link1_centre_of_mass_y = params->rrrs_link1_centre_of_mass[own][1];
         const real rrrs_link1_centre_of_mass_z = params->rrrs_link1_centre_of_mass[own][2];
         const real rrrs_link1_inertia_xx = params->rrrs_link1_inertia[own][0][0];
-        const real rrrs_link2_mass = params->rrrs_link2_mass[own];
+        KEEP_OF_LEG(rrrs_link2_mass, params->rrrs_link2_mass[own]);
         const real rrrs_link2_centre_of_mass_x = params->rrrs_link2_centre_of_mass[own][0];
         const real rrrs_link2_centre_of_mass_y = params->rrrs_link2_centre_of_mass[own][1];
         const real rrrs_link2_centre_of_mass_z = params->rrrs_link2_centre_of_mass[own][2];
@@ -1160,7 +1084,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_link2_inertia_yy = params->rrrs_link2_inertia[own][1][1];
         const real rrrs_link2_inertia_yz = params->rrrs_link2_inertia[own][1][2];
         const real rrrs_link2_inertia_zz = params->rrrs_link2_inertia[own][2][2];
-        const real rrrs_link3_mass = params->rrrs_link3_mass[own];
+        KEEP_OF_LEG(rrrs_link3_mass, params->rrrs_link3_mass[own]);
         const real rrrs_link3_centre_of_mass_x = params->rrrs_link3_centre_of_mass[own][0];
         const real rrrs_link3_centre_of_mass_y = params->rrrs_link3_centre_of_mass[own][1];
         const real rrrs_link3_centre_of_mass_z = params->rrrs_link3_centre_of_mass[own][2];
@@ -1171,122 +1095,122 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_link3_inertia_yz = params->rrrs_link3_inertia[own][1][2];
         const real rrrs_link3_inertia_zz = params->rrrs_link3_inertia[own][2][2];
         static const signed char signs_rrrs_branch_1[] = {1, 1};
-        const real rrrs_branch_1 = signs_rrrs_branch_1[own];
+        KEEP_OF_LEG(rrrs_branch_1, signs_rrrs_branch_1[own]);
         static const signed char signs_rrrs_branch_2[] = {1, 1};
-        const real rrrs_branch_2 = signs_rrrs_branch_2[own];
+        KEEP_OF_LEG(rrrs_branch_2, signs_rrrs_branch_2[own]);
         /* (rrrs-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrrs_size_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x;
         const real rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x;
-        const real rrrs_size_t_3 = R(6.696672622239999e-07) + rrrs_size_t + rrrs_size_t_2;
-        const real rrrs_size = root(rrrs_size_t_3);
+        KEEP_OF_LEG(rrrs_size_t_3, R(6.696672622239999e-07) + rrrs_size_t + rrrs_size_t_2);
+        KEEP_OF_LEG(rrrs_size, root(rrrs_size_t_3));
         /* (rrrs-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrrs_h_1_in_spec1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass;
-        const real rrrs_h_1_in_spec1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass;
-        const real rrrs_h_1_in_spec1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass;
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_x, rrrs_link1_centre_of_mass_x*rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_y, rrrs_link1_centre_of_mass_y*rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_z, rrrs_link1_centre_of_mass_z*rrrs_link1_mass);
         /* (rrrs-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
         const real rrrs_J_1_t_2 = rrrs_J_1_t +
             rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
             rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
-        const real rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
-            rrrs_J_1_t_2);
+        KEEP_OF_LEG(rrrs_J_1_in_spec1_xx, rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
+            rrrs_J_1_t_2));
         /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-        const real rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
-        const real rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_x, rrrs_link2_centre_of_mass_x*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_y, rrrs_link2_centre_of_mass_y*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_z, rrrs_link2_centre_of_mass_z*rrrs_link2_mass);
         /* (rrrs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
         const real rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
         const real rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z;
         const real rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3;
-        const real rrrs_J_2_in_spec2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t -
-            rrrs_J_2_t_4);
-        const real rrrs_J_2_in_spec2_xy = rrrs_link2_inertia_xy -
-            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real rrrs_J_2_in_spec2_xz = rrrs_link2_inertia_xz -
-            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        const real rrrs_J_2_in_spec2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 -
-            rrrs_J_2_t_4);
-        const real rrrs_J_2_in_spec2_yz = rrrs_link2_inertia_yz -
-            rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xx, rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t -
+            rrrs_J_2_t_4));
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xy, rrrs_link2_inertia_xy -
+            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xz, rrrs_link2_inertia_xz -
+            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yy, rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 -
+            rrrs_J_2_t_4));
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yz, rrrs_link2_inertia_yz -
+            rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass);
         const real rrrs_J_2_in_spec2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 -
             rrrs_J_2_t_4);
         /* (rrrs-rho_tip_3) connection point to the centre of mass of link 3 */
         const real rrrs_rho_tip_3_in_spec3_x = rrrs_link3_centre_of_mass_x -
             rrrs_platform_joint_offset_x;
         /* (rrrs-h_3) first moment of link 3 about the connection point */
-        const real rrrs_h_3_in_spec3_x = rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
-        const real rrrs_h_3_in_spec3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
-        const real rrrs_h_3_in_spec3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_x, rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_y, rrrs_link3_centre_of_mass_y*rrrs_link3_mass);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_z, rrrs_link3_centre_of_mass_z*rrrs_link3_mass);
         /* (rrrs-J_3) inertia tensor of link 3 about the connection point */
         const real rrrs_J_3_t = rrrs_rho_tip_3_in_spec3_x*rrrs_rho_tip_3_in_spec3_x;
         const real rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y;
         const real rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z;
         const real rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3;
-        const real rrrs_J_3_in_spec3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t -
-            rrrs_J_3_t_4);
-        const real rrrs_J_3_in_spec3_xy = rrrs_link3_inertia_xy -
-            rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
-        const real rrrs_J_3_in_spec3_xz = rrrs_link3_inertia_xz -
-            rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
-        const real rrrs_J_3_in_spec3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 -
-            rrrs_J_3_t_4);
-        const real rrrs_J_3_in_spec3_yz = rrrs_link3_inertia_yz -
-            rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
-        const real rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
-            rrrs_J_3_t_4);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xx, rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t -
+            rrrs_J_3_t_4));
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xy, rrrs_link3_inertia_xy -
+            rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xz, rrrs_link3_inertia_xz -
+            rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yy, rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 -
+            rrrs_J_3_t_4));
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yz, rrrs_link3_inertia_yz -
+            rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_zz, rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
+            rrrs_J_3_t_4));
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t = R(0.5)*rrrs_size_t;
-        const real rrrs_Kd_2_t_2 = R(0.5)*rrrs_size_t_2;
+        KEEP_OF_LEG(rrrs_Kd_2_t, R(0.5)*rrrs_size_t);
+        KEEP_OF_LEG(rrrs_Kd_2_t_2, R(0.5)*rrrs_size_t_2);
         /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3;
+        KEEP_OF_LEG(rrrs_rho2_2_t, rrrs_size*rrrs_size*rrrs_size_t_3);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = 1/rrrs_size_t;
+        KEEP_OF_LEG(inv_rrrs_size_t, 1/rrrs_size_t);
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = 1/rrrs_size_t_2;
+        KEEP_OF_LEG(inv_rrrs_size_t_2, 1/rrrs_size_t_2);
         /* (rrrs-w_3) reciprocal vector 3 */
-        const real rrrs_w_3_in_axes3_y = 1/rrrs_platform_joint_offset_x;
+        KEEP_OF_LEG(rrrs_w_3_in_axes3_y, 1/rrrs_platform_joint_offset_x);
         /* (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real rrrs_d_phi_3_t = rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y;
+        KEEP_OF_LEG(rrrs_d_phi_3_t, rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y);
         /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz;
+        KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz, rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz);
         /* (rrrs-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real rrrs_Sigma_3_t = rrrs_J_3_in_spec3_xx + rrrs_J_3_in_spec3_yy +
             rrrs_J_3_in_spec3_zz;
         const real rrrs_Sigma_3_t_2 = R(0.5)*rrrs_Sigma_3_t;
-        const real rrrs_Sigma_3_in_axes3_xx = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_xx;
-        const real rrrs_Sigma_3_in_axes3_yy = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_yy;
-        const real rrrs_Sigma_3_in_axes3_zz = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_zz;
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_zz, rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_zz);
         /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y;
-        const real rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x;
+        KEEP_OF_LEG(rrrs_d_Gamma_3_t, rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y);
+        KEEP_OF_LEG(rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x);
         /* (rrrs-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real rrrs_Sigma_2_t = rrrs_J_2_in_spec2_xx + rrrs_J_2_in_spec2_yy +
             rrrs_J_2_in_spec2_zz;
         const real rrrs_Sigma_2_t_2 = R(0.5)*rrrs_Sigma_2_t;
-        const real rrrs_Sigma_2_in_axes2_xx = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_xx;
-        const real rrrs_Sigma_2_in_axes2_yy = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_yy;
-        const real rrrs_Sigma_2_in_axes2_zz = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_zz);
         /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrs_mu_2_t = gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
-            gravity_z*rrrs_base_frame_zy;
-        const real rrrs_mu_2_t_2 = gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz +
-            gravity_z*rrrs_base_frame_zz;
-        const real rrrs_g_in_axes1_z = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx
-            + gravity_z*rrrs_base_frame_zx;
+        KEEP_OF_LEG(rrrs_mu_2_t, gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
+            gravity_z*rrrs_base_frame_zy);
+        KEEP_OF_LEG(rrrs_mu_2_t_2, gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz +
+            gravity_z*rrrs_base_frame_zz);
+        KEEP_OF_LEG(rrrs_g_in_axes1_z, gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx
+            + gravity_z*rrrs_base_frame_zx);
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrrs_size_t_3 = 1/rrrs_size_t_3;
-        const real inv_rrrs_rho2_2_t = 1/rrrs_rho2_2_t;
-        const real inv_rrrs_size = 1/rrrs_size;
+        KEEP_OF_LEG(inv_rrrs_size_t_3, 1/rrrs_size_t_3);
+        KEEP_OF_LEG(inv_rrrs_rho2_2_t, 1/rrrs_rho2_2_t);
+        KEEP_OF_LEG(inv_rrrs_size, 1/rrrs_size);
         /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrrs_d_c_in_axes3_yy = -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y -
-            rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y;
+        KEEP_OF_LEG(rrrs_d_c_in_axes3_yy, -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y -
+            rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y);
         /* (h_star) */
         const real rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x;
         const real rrrs_h_star_t_2 = rrrs_link3_mass*rrrs_platform_point_y;
@@ -1303,88 +1227,15 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z;
         const real rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4);
         /* (potential) */
-        const real rrrs_potential_t = rrrs_base_frame_xy*rrrs_base_point_x +
-            rrrs_base_frame_yy*rrrs_base_point_y + rrrs_base_frame_zy*rrrs_base_point_z;
-        const real rrrs_potential_t_2 = rrrs_base_frame_xz*rrrs_base_point_x +
-            rrrs_base_frame_yz*rrrs_base_point_y + rrrs_base_frame_zz*rrrs_base_point_z;
+        KEEP_OF_LEG(rrrs_potential_t, rrrs_base_frame_xy*rrrs_base_point_x +
+            rrrs_base_frame_yy*rrrs_base_point_y + rrrs_base_frame_zy*rrrs_base_point_z);
+        KEEP_OF_LEG(rrrs_potential_t_2, rrrs_base_frame_xz*rrrs_base_point_x +
+            rrrs_base_frame_yz*rrrs_base_point_y + rrrs_base_frame_zz*rrrs_base_point_z);
         const real rrrs_b_in_spec1_x = rrrs_base_frame_xx*rrrs_base_point_x +
             rrrs_base_frame_yx*rrrs_base_point_y + rrrs_base_frame_zx*rrrs_base_point_z;
-        const real rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass;
-        const real rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x +
-            rrrs_joint2_offset_x);
-        KEEP_OF_LEG(inv_rrrs_rho2_2_t);
-        KEEP_OF_LEG(inv_rrrs_size);
-        KEEP_OF_LEG(inv_rrrs_size_t);
-        KEEP_OF_LEG(inv_rrrs_size_t_2);
-        KEEP_OF_LEG(inv_rrrs_size_t_3);
-        KEEP_OF_LEG(rrrs_J_1_in_spec1_xx);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_xx);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_xy);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_xz);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_yy);
-        KEEP_OF_LEG(rrrs_J_2_in_spec2_yz);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_xx);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_xy);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_xz);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_yy);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_yz);
-        KEEP_OF_LEG(rrrs_J_3_in_spec3_zz);
-        KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz);
-        KEEP_OF_LEG(rrrs_Kd_2_t);
-        KEEP_OF_LEG(rrrs_Kd_2_t_2);
-        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(rrrs_base_frame_xx);
-        KEEP_OF_LEG(rrrs_base_frame_xy);
-        KEEP_OF_LEG(rrrs_base_frame_xz);
-        KEEP_OF_LEG(rrrs_base_frame_yx);
-        KEEP_OF_LEG(rrrs_base_frame_yy);
-        KEEP_OF_LEG(rrrs_base_frame_yz);
-        KEEP_OF_LEG(rrrs_base_frame_zx);
-        KEEP_OF_LEG(rrrs_base_frame_zy);
-        KEEP_OF_LEG(rrrs_base_frame_zz);
-        KEEP_OF_LEG(rrrs_base_point_x);
-        KEEP_OF_LEG(rrrs_base_point_y);
-        KEEP_OF_LEG(rrrs_base_point_z);
-        KEEP_OF_LEG(rrrs_branch_1);
-        KEEP_OF_LEG(rrrs_branch_2);
-        KEEP_OF_LEG(rrrs_d_Gamma_3_in_axes3_y);
-        KEEP_OF_LEG(rrrs_d_Gamma_3_t);
-        KEEP_OF_LEG(rrrs_d_c_in_axes3_yy);
-        KEEP_OF_LEG(rrrs_d_phi_3_t);
-        KEEP_OF_LEG(rrrs_g_in_axes1_z);
-        KEEP_OF_LEG(rrrs_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrrs_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrrs_h_1_in_spec1_z);
-        KEEP_OF_LEG(rrrs_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrrs_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrrs_h_2_in_spec2_z);
-        KEEP_OF_LEG(rrrs_h_3_in_spec3_x);
-        KEEP_OF_LEG(rrrs_h_3_in_spec3_y);
-        KEEP_OF_LEG(rrrs_h_3_in_spec3_z);
-        KEEP_OF_LEG(rrrs_joint2_offset_x);
-        KEEP_OF_LEG(rrrs_joint3_offset_x);
-        KEEP_OF_LEG(rrrs_link1_mass);
-        KEEP_OF_LEG(rrrs_link2_mass);
-        KEEP_OF_LEG(rrrs_link3_mass);
-        KEEP_OF_LEG(rrrs_mu_2_t);
-        KEEP_OF_LEG(rrrs_mu_2_t_2);
-        KEEP_OF_LEG(rrrs_platform_joint_offset_x);
-        KEEP_OF_LEG(rrrs_platform_point_x);
-        KEEP_OF_LEG(rrrs_platform_point_y);
-        KEEP_OF_LEG(rrrs_platform_point_z);
-        KEEP_OF_LEG(rrrs_potential_t);
-        KEEP_OF_LEG(rrrs_potential_t_2);
-        KEEP_OF_LEG(rrrs_potential_t_3);
-        KEEP_OF_LEG(rrrs_potential_t_4);
-        KEEP_OF_LEG(rrrs_rho2_2_t);
-        KEEP_OF_LEG(rrrs_size);
-        KEEP_OF_LEG(rrrs_size_t_3);
-        KEEP_OF_LEG(rrrs_w_3_in_axes3_y);
+        KEEP_OF_LEG(rrrs_potential_t_3, rrrs_b_in_spec1_x*rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_potential_t_4, rrrs_link2_mass*(rrrs_b_in_spec1_x +
+            rrrs_joint2_offset_x));
         m_star_of_legs += rrrs_link3_mass;
         h_star_in_platform_x_of_legs += rrrs_h_star_t;
         h_star_in_platform_y_of_legs += rrrs_h_star_t_2;
@@ -1401,64 +1252,43 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         legs_size_rrrs += rrrs_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rrrrs_in_platform_x +
-        R(0.3333333333333333)*b_c_rrrs_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rrrrs_in_platform_y +
-        R(0.3333333333333333)*b_c_rrrs_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rrrrs_in_platform_z +
-        R(0.3333333333333333)*b_c_rrrs_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_rrrrs_in_platform_x +
+        R(0.3333333333333333)*b_c_rrrs_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_rrrrs_in_platform_y +
+        R(0.3333333333333333)*b_c_rrrs_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_rrrrs_in_platform_z +
+        R(0.3333333333333333)*b_c_rrrs_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.3333333333333333)*legs_size_rrrrs +
-        R(0.3333333333333333)*legs_size_rrrs);
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(R(0.3333333333333333)*legs_size_rrrrs +
+        R(0.3333333333333333)*legs_size_rrrs));
     return OK;
 }
 
@@ -2180,14 +2010,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -2226,7 +2056,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -2345,8 +2175,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_x_3_t = rrrrs_root_1*v->rrrrs_s_2;
     const real rrrrs_x_3_in_axes2_x = v->rrrrs_c_2*rrrrs_x_2_in_axes1_z -
         m->rrrrs_joint3_offset_x[i] + rrrrs_x_3_t;
-    /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 3 */
+    /* (rrrrs-Kd_3) */
     const real rrrrs_Kd_3_t_3 = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
         rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
     const real rrrrs_Kd_3 = m->rrrrs_Kd_3_t[i] - m->rrrrs_Kd_3_t_2[i] + R(0.5)*rrrrs_Kd_3_t_3;
@@ -2354,7 +2183,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_Kc_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_3_in_axes2_x;
     /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
     const real rrrrs_Ks_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_2_in_axes2_y;
-    /* (rrrrs-rho2_3) squared amplitude */
+    /* (rrrrs-rho2_3) */
     v->rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3;
     /* (rrrrs-disc_3) discriminant */
     v->rrrrs_disc_3 = v->rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3;
@@ -2365,14 +2194,14 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3);
     /* (rrrrs-s_3) sine of the angle of joint 3 from its reference direction */
     v->rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kd_3*rrrrs_Ks_3 + rrrrs_Kc_3*rrrrs_root_3);
-    /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
+    /* (rrrrs-h_3) */
     v->rrrrs_h_3_in_axes2_x = v->rrrrs_c_3*m->rrrrs_h_3_in_spec3_x[i] -
         m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_s_3;
-    /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
+    /* (rrrrs-x_4) */
     const real rrrrs_x_4_in_axes3_x =
         m->inv_rrrrs_size_t[i]*rrrrs_Kd_3*m->rrrrs_joint4_offset_x[i] -
         m->rrrrs_joint4_offset_x[i];
-    /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
+    /* (rrrrs-c_4) */
     v->rrrrs_c_4 =
         m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x;
     /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
@@ -2436,7 +2265,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_w_3_t_8 = v->axis_x_rrrrs_axes4_x*v->inv_rrrrs_r_3_in_axes4_y;
     v->rrrrs_w_3_t_9 = v->axis_x_rrrrs_axes4_y*v->inv_rrrrs_r_3_in_axes4_y;
     v->rrrrs_w_3_t_10 = v->axis_x_rrrrs_axes4_z*v->inv_rrrrs_r_3_in_axes4_y;
-    /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
+    /* (rrrrs-bias) */
     const real rrrrs_d_2_in_axes2_x = v->rrrrs_c_2*m->rrrrs_joint2_offset_x[i];
     const real rrrrs_d_2_in_axes2_y = -m->rrrrs_joint2_offset_x[i]*v->rrrrs_s_2;
     const real rrrrs_bias_t_3 = v->rrrrs_c_3*rrrrs_d_2_in_axes2_x +
@@ -2445,7 +2274,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
         rrrrs_d_2_in_axes2_x*v->rrrrs_s_3;
     v->rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*v->rrrrs_c_4 - rrrrs_bias_t_4*v->rrrrs_s_4_t;
     v->rrrrs_d_2_in_axes4_y = rrrrs_bias_t_4*v->rrrrs_c_4 + rrrrs_bias_t_3*v->rrrrs_s_4_t;
-    /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (rrrrs-acc_3) */
     v->rrrrs_g_in_axes1_x = m->rrrrs_acc_3_t[i]*v->rrrrs_c_1 +
         m->rrrrs_acc_3_t_2[i]*v->rrrrs_s_1;
     v->rrrrs_g_in_axes1_y = m->rrrrs_acc_3_t_2[i]*v->rrrrs_c_1 -
@@ -2590,7 +2419,7 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*v->rrrrs_qd_4;
     /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
     const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - v->rrrrs_zeta_4_t;
-    /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
+    /* (rrrrs-bias) */
     const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
     v->rrrrs_bias_in_axes4_x = v->rrrrs_W_1_in_axes4_xy*v->rrrrs_d_2_in_axes4_y +
         v->rrrrs_W_1_in_axes4_xy*v->rrrrs_d_3_in_axes4_y +
@@ -2617,7 +2446,7 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
     const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(v->rrrrs_bias_t +
         rrrrs_a_o_3_t);
-    /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (rrrrs-acc_3) */
     v->rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*v->rrrrs_c_3;
     v->rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*v->rrrrs_s_3;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
@@ -2634,7 +2463,7 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->rrrrs_mu_3_t = m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_t_2 - rrrrs_bias_t_2);
     v->rrrrs_mu_3_t_2 = m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_t - rrrrs_bias_t_2);
     v->rrrrs_mu_3_t_3 = m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_t - rrrrs_f_3_t_2);
-    /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrrs-mu_2) */
     const real rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
     v->rrrrs_mu_2_t_2 = m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v->rrrrs_bias_t);
     v->rrrrs_mu_2_t_3 = m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_t - v->rrrrs_bias_t);
@@ -2677,7 +2506,7 @@ INLINE void stage_rrrrs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, c
 
 INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
 {
-    /* (rrrrs-u_1) centripetal acceleration of the connection point */
+    /* (rrrrs-u_1) */
     const real rrrrs_u_1_in_axes4_x = v->axis_x_rrrrs_axes4_x*v->rrrrs_u_1_x +
         v->axis_x_rrrrs_axes4_y*v->rrrrs_u_1_y + v->axis_x_rrrrs_axes4_z*v->rrrrs_u_1_z;
     const real rrrrs_u_1_in_axes4_y = v->axis_y_rrrrs_axes4_x*v->rrrrs_u_1_x +
@@ -2891,14 +2720,13 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
 
 INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
 {
-    /* (rrrrs-w_4) reciprocal vector 3 */
+    /* (rrrrs-w_4) */
     const real rrrrs_w_4_in_axes4_x =
         v->inv_rrrrs_r_3_in_axes4_y*v->rrrrs_r_3_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
     /* (rrrrs-D_1_4) inertia of joint 4 along joint 1 */
     const real rrrrs_D_1_4 = m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_e_1_in_axes4_x +
         m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_e_1_in_axes4_y;
-    /* (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
-       about the connection point */
+    /* (rrrrs-Jc_3) */
     const real rrrrs_Jc_3_t = m->rrrrs_J_4_in_spec4_xy[i]*v->rrrrs_s_4_t;
     const real rrrrs_Jc_3_t_2 = m->rrrrs_J_4_in_spec4_xx[i]*v->rrrrs_c_4 + rrrrs_Jc_3_t;
     const real rrrrs_Jc_3_t_3 = m->rrrrs_J_4_in_spec4_xy[i]*v->rrrrs_c_4;
@@ -2923,8 +2751,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         v->rrrrs_h_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
     const real rrrrs_L_c_3_2_in_axes1_z = rrrrs_Jc_3_in_axes2_xz*v->rrrrs_c_2 -
         rrrrs_Jc_3_in_axes2_yz*v->rrrrs_s_2;
-    /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
+    /* (rrrrs-Jc_2) */
     const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_s_3;
     const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_c_3 - rrrrs_Jc_2_t_2;
     const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_c_3;
@@ -2943,8 +2770,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         v->rrrrs_s_2*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
         v->rrrrs_c_3*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_c_3 + rrrrs_Jc_2_t_2) +
         v->rrrrs_s_3*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_s_3 + rrrrs_Jc_2_t_4)));
-    /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-       inertia and weight */
+    /* (rrrrs-d_Gamma_4) */
     const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*v->rrrrs_w_1_in_axes4_z;
     const real rrrrs_d_Gamma_4_t_2 = m->rrrrs_d_Gamma_4_t[i]*v->rrrrs_r_3_in_axes4_x;
     const real rrrrs_d_Gamma_4_in_axes4_x = -m->rrrrs_h_4_in_spec4_y[i] -
@@ -2983,8 +2809,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_d_Gamma_1_in_axes4_z = v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]
         - v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] +
         v->rrrrs_w_1_in_axes4_z*(m->rrrrs_J_1_in_spec1_xx[i] + rrrrs_Jc_2_in_axes1_zz);
-    /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
+    /* (rrrrs-d_G) */
     const real rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*v->rrrrs_w_1_in_axes4_z;
     const real rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*v->rrrrs_w_1_in_axes4_z;
     const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x -
@@ -2994,8 +2819,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
     const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
-    /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrrrs-d_c) */
     const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_w_4_in_axes4_x -
         v->inv_rrrrs_r_3_in_axes4_y) - rrrrs_d_G_in_axes4_xx;
     const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
@@ -3034,8 +2858,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_8;
     v->rrrrs_Q_yz = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_6
         + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_9;
-    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 2 */
+    /* (rrrrs-d_P_2) */
     const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x -
         rrrrs_d_Gamma_4_in_axes4_x*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i] +
         rrrrs_d_G_in_axes4_xx*v->rrrrs_r_2_in_axes4_y;
@@ -3130,24 +2953,24 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_4_in_axes4_yz = v->rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_in_axes4_x;
     const real rrrrs_B_4_in_axes4_zx = v->rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_in_axes4_y;
     const real rrrrs_B_4_in_axes4_zy = v->rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_in_axes4_x;
-    /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
+    /* (rrrrs-a_o_3) */
     const real rrrrs_a_o_3_in_axes2_y = v->rrrrs_B_2_in_axes2_yx*m->rrrrs_joint3_offset_x[i];
-    /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (rrrrs-acc_3) */
     v->rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_y*v->rrrrs_s_3 - v->rrrrs_g_in_axes3_x +
         v->rrrrs_acc_3_t_3;
     v->rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_c_3 - v->rrrrs_g_in_axes3_y +
         v->rrrrs_acc_3_t_4;
     const real rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*m->rrrrs_joint3_offset_x[i] -
         v->rrrrs_g_in_axes1_y;
-    /* (rrrrs-f_3) inertia force of link 3 less its weight */
+    /* (rrrrs-f_3) */
     const real rrrrs_f_3_in_axes3_z = rrrrs_acc_3_in_axes3_z*m->rrrrs_link3_mass[i] -
         v->rrrrs_f_3_t_5 + rrrrs_B_3_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
         rrrrs_B_3_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i];
-    /* (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity */
+    /* (rrrrs-acc_4) */
     v->rrrrs_acc_4_in_axes4_x = v->rrrrs_S_ddot_in_axes4_x - v->rrrrs_g_in_axes4_x;
     v->rrrrs_acc_4_in_axes4_y = v->rrrrs_S_ddot_in_axes4_y - v->rrrrs_g_in_axes4_y;
     v->rrrrs_acc_4_in_axes4_z = v->rrrrs_S_ddot_in_axes4_z - v->rrrrs_g_in_axes4_z;
-    /* (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+    /* (rrrrs-mu_4) */
     const real rrrrs_mu_4_in_axes4_x = v->rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
         v->rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i] + v->rrrrs_mu_4_t +
         rrrrs_B_4_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
@@ -3166,7 +2989,7 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         rrrrs_B_4_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
         rrrrs_B_4_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] -
         rrrrs_B_4_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i];
-    /* (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (rrrrs-mu_3) */
     const real rrrrs_mu_3_in_axes3_x = v->rrrrs_mu_3_t -
         v->rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i] +
         v->rrrrs_B_3_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
@@ -3194,7 +3017,7 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_N_3_in_axes3_y = rrrrs_mu_3_in_axes3_y +
         v->rrrrs_c_4*rrrrs_mu_4_in_axes4_y - rrrrs_mu_4_in_axes4_x*v->rrrrs_s_4_t;
     v->rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z;
-    /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrrs-mu_2) */
     const real rrrrs_mu_2_in_axes2_x = v->rrrrs_B_2_in_axes2_yx*m->rrrrs_J_2_in_spec2_xz[i] -
         v->rrrrs_mu_2_t_5 + v->rrrrs_mu_2_t_2 +
         m->rrrrs_Sigma_2_in_axes2_zz[i]*v->rrrrs_alpha_1_in_axes2_x +
@@ -3212,21 +3035,19 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y -
         rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i] + rrrrs_N_3_in_axes3_x*v->rrrrs_s_3 +
         rrrrs_N_3_in_axes3_y*v->rrrrs_c_3;
-    /* (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrrrs-mu_1) */
     const real rrrrs_mu_1_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*v->rrrrs_qdd_1 -
         v->rrrrs_mu_1_t;
     /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrrrs_N_1_in_axes1_z = rrrrs_mu_1_in_axes1_z +
         rrrrs_N_2_in_axes2_x*v->rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v->rrrrs_s_2;
-    /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrrrs-G) */
     v->rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
     v->rrrrs_G_in_axes4_x =
         v->inv_rrrrs_r_3_in_axes4_y*(v->rrrrs_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x -
         v->rrrrs_N_3_in_axes3_z);
-    /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrrrs-c) */
     v->rrrrs_c_in_axes4_x = v->rrrrs_c_t - rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
         rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i] - v->rrrrs_G_in_axes4_x;
     v->rrrrs_c_in_axes4_y = v->rrrrs_c_t_2 - rrrrs_B_4_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i]
@@ -3304,15 +3125,14 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1;
     /* (rrrs-x_2) from the origin of joint 2 to the connection point */
     const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - m->rrrs_joint2_offset_x[i];
-    /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 2 */
+    /* (rrrs-Kd_2) */
     const real rrrs_Kd_2_t_3 = v->rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
     const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
     const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
     const real rrrs_Ks_2 = m->rrrs_joint3_offset_x[i]*rrrs_root_1;
-    /* (rrrs-rho2_2) squared amplitude */
+    /* (rrrs-rho2_2) */
     v->rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
     /* (rrrs-disc_2) discriminant */
     v->rrrs_disc_2 = v->rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
@@ -3323,11 +3143,11 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kd_2*rrrs_Ks_2 + rrrs_Kc_2*rrrs_root_2);
-    /* (rrrs-x_3) from the origin of joint 3 to the connection point */
+    /* (rrrs-x_3) */
     const real rrrs_x_3_in_axes2_x =
         m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
         m->rrrs_joint3_offset_x[i];
-    /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
+    /* (rrrs-c_3) */
     v->rrrs_c_3 =
         m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_x_3_in_axes2_x;
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
@@ -3386,7 +3206,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
         v->axis_y_rrrs_axes3_y*m->gravity_y + v->axis_y_rrrs_axes3_z*m->gravity_z;
     v->rrrs_g_in_axes3_z = v->axis_z_rrrs_axes3_x*m->gravity_x +
         v->axis_z_rrrs_axes3_y*m->gravity_y + v->axis_z_rrrs_axes3_z*m->gravity_z;
-    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrs-mu_2) */
     v->rrrs_g_in_axes1_x = v->rrrs_c_1*m->rrrs_mu_2_t[i] + m->rrrs_mu_2_t_2[i]*v->rrrs_s_1;
     v->rrrs_g_in_axes1_y = v->rrrs_c_1*m->rrrs_mu_2_t_2[i] - m->rrrs_mu_2_t[i]*v->rrrs_s_1;
     const real rrrs_g_in_axes2_x = v->rrrs_c_2*m->rrrs_g_in_axes1_z[i] +
@@ -3415,7 +3235,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
 INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrrs *v)
 {
-    /* (rrrs-S_dot) velocity of the connection point */
+    /* (rrrs-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->rrrs_S_dot_t_3 = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
@@ -3464,7 +3284,7 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*v->rrrs_qd_3;
     /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - v->rrrs_zeta_3_t;
-    /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+    /* (rrrs-bias) */
     const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(v->rrrs_bias_t*v->rrrs_s_3_t -
         v->rrrs_bias_t_2*v->rrrs_c_3) - rrrs_omega_1_in_axes3_y*(v->rrrs_bias_t*v->rrrs_c_3 +
         v->rrrs_bias_t_2*v->rrrs_s_3_t);
@@ -3492,7 +3312,7 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->rrrs_mu_3_t_4 = m->rrrs_J_3_in_spec3_yz[i]*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3);
     v->rrrs_mu_3_t_5 = m->rrrs_J_3_in_spec3_xz[i]*(rrrs_mu_3_t - rrrs_mu_3_t_3);
     v->rrrs_mu_3_t_6 = m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2);
-    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrs-mu_2) */
     const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
     const real rrrs_mu_2_t_5 = v->rrrs_qd_2*v->rrrs_qd_2;
@@ -3683,7 +3503,7 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     v->rrrs_U_z = -v->axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
         v->axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
         v->axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->rrrs_Z_a_t = v->rrrs_U_z*v->rrrs_q_y - v->rrrs_U_y*v->rrrs_q_z;
     v->rrrs_Z_a_t_2 = v->rrrs_U_x*v->rrrs_q_z - v->rrrs_U_z*v->rrrs_q_x;
     v->rrrs_Z_a_t_3 = v->rrrs_U_y*v->rrrs_q_x - v->rrrs_U_x*v->rrrs_q_y;
@@ -3715,11 +3535,11 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_B_3_in_axes3_yz = v->rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
     const real rrrs_B_3_in_axes3_zx = v->rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
     const real rrrs_B_3_in_axes3_zy = v->rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
-    /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (rrrs-acc_3) */
     v->rrrs_acc_3_in_axes3_x = v->rrrs_S_ddot_in_axes3_x - v->rrrs_g_in_axes3_x;
     v->rrrs_acc_3_in_axes3_y = v->rrrs_S_ddot_in_axes3_y - v->rrrs_g_in_axes3_y;
     v->rrrs_acc_3_in_axes3_z = v->rrrs_S_ddot_in_axes3_z - v->rrrs_g_in_axes3_z;
-    /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (rrrs-mu_3) */
     const real rrrs_mu_3_in_axes3_x = v->rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
         v->rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] + v->rrrs_mu_3_t_4 +
         rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
@@ -3738,7 +3558,7 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
         rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
         rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
-    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrs-mu_2) */
     const real rrrs_mu_2_in_axes2_x = v->rrrs_mu_2_t_6 - v->rrrs_mu_2_t_9 +
         rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_in_axes2_x +
@@ -3760,18 +3580,16 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + v->rrrs_c_3*rrrs_mu_3_in_axes3_y -
         rrrs_mu_3_in_axes3_x*v->rrrs_s_3_t;
     const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
-    /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrrs-mu_1) */
     const real rrrs_mu_1_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*v->rrrs_qdd_1 -
         v->rrrs_mu_1_t;
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
         rrrs_N_2_in_axes2_y*v->rrrs_s_2;
-    /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrrs-G) */
     const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
-    /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrrs-c) */
     v->rrrs_c_in_axes3_x = v->rrrs_c_t - rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
         rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
         v->rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*v->rrrs_r_2_in_axes3_x -
@@ -3785,14 +3603,13 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
 
 INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
 {
-    /* (rrrs-w_3) reciprocal vector 3 */
+    /* (rrrs-w_3) */
     const real rrrs_w_3_in_axes3_x =
         -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
     /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
     const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
         m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
-    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
+    /* (rrrs-Jc_2) */
     const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
     const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
     const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
@@ -3805,8 +3622,7 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
         v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
         m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
         v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
-    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
+    /* (rrrs-d_Gamma_3) */
     const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
     const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
         - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
@@ -3831,8 +3647,7 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
        leg's inertia and weight along all degrees of freedom */
     const real rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
     const real rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrrs-d_c) */
     const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
         rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
         rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
@@ -3874,7 +3689,7 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
     v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
         v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
     v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
     v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
@@ -3884,7 +3699,7 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
     v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
     v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
     v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
     v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
@@ -3947,7 +3762,7 @@ INLINE void any_sums_rrrrs(size_t k, size_t count, int add, const values_rrrrs *
     gather(&terms[3*count + k], add, v->rrrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->rrrrs_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->rrrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->rrrrs_M_ta_t_5);  /* M_ta_rrrrs_yy */
     gather(&terms[7*count + k], add, v->rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
     gather(&terms[8*count + k], add, v->rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
@@ -3956,7 +3771,7 @@ INLINE void any_sums_rrrrs(size_t k, size_t count, int add, const values_rrrrs *
     gather(&terms[11*count + k], add, v->rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -3971,7 +3786,7 @@ INLINE void any_sums_rrrrs_2(size_t k, size_t count, int add, const values_rrrrs
     gather(&terms[0*count + k], add, v->rrrrs_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrrrs_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->rrrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->rrrrs_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -3979,50 +3794,41 @@ INLINE void any_sums_rrrrs_2(size_t k, size_t count, int add, const values_rrrrs
 
 INLINE void any_entries_rrrrs(size_t k, size_t count, const values_rrrrs *v, real *o)
 {
-    /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-       joint 2 */
-    o[0*count + k] = v->rrrrs_P_2_o;
-}
-
-INLINE void any_entries_rrrrs_2(size_t k, size_t count, const values_rrrrs *v, real *o)
-{
-    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 2 */
+    /* (rrrrs-d_P_2) */
     o[0*count + k] = v->rrrrs_d_P_2_x;
     o[1*count + k] = v->rrrrs_d_P_2_x;
     o[2*count + k] = v->rrrrs_d_P_2_y;
     o[3*count + k] = v->rrrrs_d_P_2_y;
     o[4*count + k] = v->rrrrs_d_P_2_z;
     o[5*count + k] = v->rrrrs_d_P_2_z;
-    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
+    /* (rrrrs-M_ya_2) */
     o[6*count + k] = v->rrrrs_M_ya_2_x;
     o[7*count + k] = v->rrrrs_M_ya_2_x;
     o[8*count + k] = v->rrrrs_M_ya_2_y;
     o[9*count + k] = v->rrrrs_M_ya_2_y;
     o[10*count + k] = v->rrrrs_M_ya_2_z;
     o[11*count + k] = v->rrrrs_M_ya_2_z;
-    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 2 */
+    /* (rrrrs-dy_2_P_2) */
     o[12*count + k] = v->rrrrs_dy_2_P_2;
 }
 
-INLINE void any_entries_rrrrs_3(size_t k, size_t count, const values_rrrrs *v, real *o)
+INLINE void any_entries_rrrrs_2(size_t k, size_t count, const values_rrrrs *v, real *o)
 {
-    /* (rrrrs-w_1) reciprocal vector 1 */
+    /* (rrrrs-w_1) */
     o[0*count + k] = v->rrrrs_w_1_x;
     o[1*count + k] = v->rrrrs_w_1_y;
     o[2*count + k] = v->rrrrs_w_1_z;
-    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrrrs-H_a_1) */
     o[3*count + k] = v->rrrrs_H_a_1_x;
     o[4*count + k] = v->rrrrs_H_a_1_y;
     o[5*count + k] = v->rrrrs_H_a_1_z;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     o[6*count + k] = 1;
-    /* (rrrrs-w_3) reciprocal vector 2 */
+    /* (rrrrs-w_3) */
     o[7*count + k] = -v->rrrrs_w_3_t_8;
     o[8*count + k] = -v->rrrrs_w_3_t_9;
     o[9*count + k] = -v->rrrrs_w_3_t_10;
-    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
+    /* (rrrrs-H_a_3) */
     o[10*count + k] = v->rrrrs_H_a_3_x;
     o[11*count + k] = v->rrrrs_H_a_3_y;
     o[12*count + k] = v->rrrrs_H_a_3_z;
@@ -4041,11 +3847,38 @@ INLINE void any_singular_rrrrs(const prepared *m, size_t i, size_t k, const valu
 
 INLINE void any_sums_rrrs(size_t k, size_t count, int add, const values_rrrs *v, real *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, v->rrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->rrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->rrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->rrrs_Q_t_13);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[20*count + k], add, v->rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
+    gather(&terms[21*count + k], add, v->rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
+    gather(&terms[8*count + k], add, v->rrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) */
+    gather(&terms[14*count + k], add, v->rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrrs_2(size_t k, size_t count, int add, const values_rrrs *v, real *terms)
+{
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->rrrs_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrrs_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->rrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->rrrs_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -4053,19 +3886,19 @@ INLINE void any_sums_rrrs(size_t k, size_t count, int add, const values_rrrs *v,
 
 INLINE void any_entries_rrrs(size_t k, size_t count, const values_rrrs *v, real *o)
 {
-    /* (rrrs-w_1) reciprocal vector 1 */
+    /* (rrrs-w_1) */
     o[0*count + k] = v->rrrs_w_1_x;
     o[1*count + k] = v->rrrs_w_1_y;
     o[2*count + k] = v->rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrrs-H_a_1) */
     o[3*count + k] = v->rrrs_H_a_1_x;
     o[4*count + k] = v->rrrs_H_a_1_y;
     o[5*count + k] = v->rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
+    /* (rrrs-w_2) */
     o[6*count + k] = v->rrrs_w_2_x;
     o[7*count + k] = v->rrrs_w_2_y;
     o[8*count + k] = v->rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    /* (rrrs-H_a_2) */
     o[9*count + k] = v->rrrs_H_a_2_x;
     o[10*count + k] = v->rrrs_H_a_2_y;
     o[11*count + k] = v->rrrs_H_a_2_z;
@@ -4078,6 +3911,140 @@ INLINE void any_singular_rrrs(const prepared *m, size_t i, size_t k, const value
         UNLESS(magnitude(v->rrrs_rho2_2) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
         UNLESS(magnitude(v->rrrs_v_1_in_axes3_z) > TOLERANCE*m->rrrs_size[i]) +
         UNLESS(magnitude(v->rrrs_r_2_in_axes3_y) > TOLERANCE*m->rrrs_size[i]);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_rrrrs_yy = sums[6*w + k];
+    const real M_ta_rrrrs_zz = sums[7*w + k];
+    const real M_ta_rrrs_yy = sums[20*w + k];
+    const real M_ta_rrrs_zz = sums[21*w + k];
+    const real M_ta_xx = -M_ta_rrrs_yy - M_ta_rrrs_zz - M_ta_rrrrs_yy - M_ta_rrrrs_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
+    const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_rrrs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -4154,10 +4121,11 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     stage_rrrrs_Z_dynamics(m, i, &v);
     stage_rrrrs_M_dynamics(m, i, &v);
     any_sums_rrrrs(k, count, add, &v, terms);
-    any_sums_rrrrs_2(k, count, add, &v, terms + 20*count);
-    any_entries_rrrrs(k, count, &v, o);
-    any_entries_rrrrs_2(k, count, &v, o + 1*count);
-    any_entries_rrrrs_3(k, count, &v, o + 14*count);
+    any_sums_rrrrs_2(k, count, add, &v, terms + 22*count);
+    /* (rrrrs-P_2_o) */
+    o[0*count + k] = v.rrrrs_P_2_o;
+    any_entries_rrrrs(k, count, &v, o + 1*count);
+    any_entries_rrrrs_2(k, count, &v, o + 14*count);
     o[28*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 29*count);
     o[30*count + k] = (((v.rrrrs_P_2_o + v.rrrrs_d_P_2_x) + (v.rrrrs_d_P_2_y +
@@ -4212,30 +4180,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
     stage_rrrs_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrrs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrrs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[26*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
-    gather(&terms[27*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) */
-    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    any_sums_rrrs(k, count, add, &v, terms + 20*count);
+    any_sums_rrrs(k, count, add, &v, terms);
+    any_sums_rrrs_2(k, count, add, &v, terms + 22*count);
     any_entries_rrrs(k, count, &v, o);
     o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
@@ -4247,136 +4193,15 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_rrrrs_yy = sums[6*w + k];
-    const real M_ta_rrrrs_zz = sums[7*w + k];
-    const real M_ta_rrrs_yy = sums[26*w + k];
-    const real M_ta_rrrs_zz = sums[27*w + k];
-    const real M_ta_xx = -M_ta_rrrs_yy - M_ta_rrrs_zz - M_ta_rrrrs_yy - M_ta_rrrrs_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 22*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)28)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rrrrs[SUMS_OF_dynamics*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)]
@@ -4459,7 +4284,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     stage_rrrrs_M_dynamics(m, i, &v);
     any_sums_rrrrs(k, count, add, &v, terms);
-    any_entries_rrrrs_2(k, count, &v, o);
+    any_entries_rrrrs(k, count, &v, o);
     o[13*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 14*count);
     o[15*count + k] = (v.rrrrs_d_P_2_x + (v.rrrrs_d_P_2_y + v.rrrrs_d_P_2_z)) +
@@ -4493,29 +4318,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrrs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrrs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[20*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
-    gather(&terms[21*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) */
-    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    any_sums_rrrs(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
@@ -4523,107 +4326,13 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_rrrrs_yy = sums[6*w + k];
-    const real M_ta_rrrrs_zz = sums[7*w + k];
-    const real M_ta_rrrs_yy = sums[20*w + k];
-    const real M_ta_rrrs_zz = sums[21*w + k];
-    const real M_ta_xx = -M_ta_rrrs_yy - M_ta_rrrs_zz - M_ta_rrrrs_yy - M_ta_rrrrs_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
-    const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)22)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rrrrs[SUMS_OF_M*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] CLEARED;
@@ -4655,7 +4364,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -4714,7 +4423,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_rrrrs_V_X(m, w, i, j, V, &v);
     stage_rrrrs_Z_dynamics(m, i, &v);
     any_sums_rrrrs_2(k, count, add, &v, terms);
-    any_entries_rrrrs(k, count, &v, o);
+    /* (rrrrs-P_2_o) */
+    o[0*count + k] = v.rrrrs_P_2_o;
     o[1*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 2*count);
     o[3*count + k] = v.rrrrs_P_2_o;
@@ -4736,42 +4446,14 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
-    any_sums_rrrs(k, count, add, &v, terms);
+    any_sums_rrrs_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -4810,7 +4492,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -4855,7 +4537,7 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
 {
     values_rrrrs v;
     stage_rrrrs_X(m, w, i, j, s, X, &v);
-    any_entries_rrrrs_3(k, count, &v, o);
+    any_entries_rrrrs_2(k, count, &v, o);
     o[14*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + (v.rrrrs_H_a_1_x +
@@ -4901,7 +4583,7 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] CLEARED;
@@ -5036,25 +4718,23 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     stage_rrrrs_V_X(m, w, i, j, V, &v);
     stage_rrrrs_A_V_X(m, w, i, j, A, &v);
     stage_rrrrs_legs_required(m, w, i, j, A, &v);
-    /* (rrrrs-f_3) inertia force of link 3 less its weight */
+    /* (rrrrs-f_3) */
     const real rrrrs_f_3_in_axes3_x = v.rrrrs_acc_3_in_axes3_x*m->rrrrs_link3_mass[i] -
         v.rrrrs_f_3_t_3 + v.rrrrs_B_3_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
         v.rrrrs_B_3_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i];
     const real rrrrs_f_3_in_axes3_y = v.rrrrs_acc_3_in_axes3_y*m->rrrrs_link3_mass[i] -
         v.rrrrs_f_3_t_4 + v.rrrrs_B_3_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
         v.rrrrs_B_3_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i];
-    /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (rrrrs-mu_2) */
     const real rrrrs_mu_2_in_axes2_z = v.rrrrs_B_2_in_axes2_yx*m->rrrrs_Sigma_2_in_axes2_xx[i]
         - v.rrrrs_mu_2_t_7 - v.rrrrs_B_2_in_axes2_xy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
         v.rrrrs_mu_2_t_4 + m->rrrrs_J_2_in_spec2_xz[i]*v.rrrrs_alpha_1_in_axes2_x +
         m->rrrrs_J_2_in_spec2_yz[i]*v.rrrrs_alpha_1_in_axes2_y;
-    /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
-       point left out */
+    /* (rrrrs-N_2) */
     const real rrrrs_N_2_in_axes2_z = rrrrs_mu_2_in_axes2_z +
         m->rrrrs_joint3_offset_x[i]*(v.rrrrs_c_3*rrrrs_f_3_in_axes3_y +
         rrrrs_f_3_in_axes3_x*v.rrrrs_s_3) + v.rrrrs_N_3_in_axes3_z;
-    /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrrrs-c) */
     const real rrrrs_c_x = v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
         v.axis_x_rrrrs_axes4_x*v.rrrrs_c_in_axes4_x +
         v.axis_z_rrrrs_axes4_x*v.rrrrs_c_in_axes4_z;
@@ -5068,11 +4748,11 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_P_2_t = v.rrrrs_G_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
         v.rrrrs_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
     const real rrrrs_P_2 = rrrrs_N_2_in_axes2_z + rrrrs_P_2_t;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rrrrs_R_a_t = rrrrs_c_y*v.rrrrs_q_z - rrrrs_c_z*v.rrrrs_q_y;
     const real rrrrs_R_a_t_2 = rrrrs_c_z*v.rrrrs_q_x - rrrrs_c_x*v.rrrrs_q_z;
     const real rrrrs_R_a_t_3 = rrrrs_c_x*v.rrrrs_q_y - rrrrs_c_y*v.rrrrs_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rrrrs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrrrs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, rrrrs_c_z);  /* R_t_z_of_legs */
@@ -5082,7 +4762,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     gather(&terms[5*count + k], add, rrrrs_R_a_t_3);  /* R_a_z_of_legs */
     /* (rrrrs-P_2) */
     o[0*count + k] = rrrrs_P_2;
-    any_entries_rrrrs_3(k, count, &v, o + 1*count);
+    any_entries_rrrrs_2(k, count, &v, o + 1*count);
     o[15*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 16*count);
 }
@@ -5118,8 +4798,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_A_V_X(m, w, i, j, s, A, &v);
     stage_rrrs_legs_required(m, i, &v);
-    /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrrs-c) */
     const real rrrs_c_x = v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y +
         v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
     const real rrrs_c_y = v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y +
@@ -5164,7 +4843,7 @@ INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -5174,7 +4853,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -5240,8 +4919,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrrrs[17*LANES];
@@ -5294,7 +4973,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     const real rrrrs_q_4 = angle(-v.rrrrs_s_4_t, v.rrrrs_c_4);
     /* (rrrrs-q_1) */
     o[0*count + k] = rrrrs_q_1;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real rrrrs_y_2_extra = X[7*w + j];
     o[1*count + k] = rrrrs_y_2_extra;
     /* (rrrrs-q_3) */
@@ -5357,7 +5036,8 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
@@ -5421,14 +5101,14 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t
     stage_rrrrs_V(w, j, V, &v);
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     stage_rrrrs_V_X(m, w, i, j, V, &v);
-    /* (rrrrs-qd_1) rate of joint 1 */
+    /* (rrrrs-qd_1) */
     o[0*count + k] = v.rrrrs_qd_1;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real rrrrs_yd_2 = V[6*w + j];
     o[1*count + k] = rrrrs_yd_2;
-    /* (rrrrs-qd_3) rate of joint 3 */
+    /* (rrrrs-qd_3) */
     o[2*count + k] = -v.rrrrs_qd_3_t;
-    /* (rrrrs-qd_4) rate of joint 4 */
+    /* (rrrrs-qd_4) */
     o[3*count + k] = v.rrrrs_qd_4;
     o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 5*count);
@@ -5453,11 +5133,11 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
-    /* (rrrs-qd_1) rate of joint 1 */
+    /* (rrrs-qd_1) */
     o[0*count + k] = v.rrrs_qd_1;
-    /* (rrrs-qd_2) rate of joint 2 */
+    /* (rrrs-qd_2) */
     o[1*count + k] = v.rrrs_qd_2;
-    /* (rrrs-qd_3) rate of joint 3 */
+    /* (rrrs-qd_3) */
     o[2*count + k] = v.rrrs_qd_3;
     o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
@@ -5477,8 +5157,8 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
@@ -5544,14 +5224,14 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     stage_rrrrs_A_X(w, j, A, &v);
     stage_rrrrs_V_X(m, w, i, j, V, &v);
     stage_rrrrs_A_V_X(m, w, i, j, A, &v);
-    /* (rrrrs-qdd_1) acceleration of joint 1 */
+    /* (rrrrs-qdd_1) */
     o[0*count + k] = v.rrrrs_qdd_1;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real rrrrs_ydd_2 = A[6*w + j];
     o[1*count + k] = rrrrs_ydd_2;
-    /* (rrrrs-qdd_3) acceleration of joint 3 */
+    /* (rrrrs-qdd_3) */
     o[2*count + k] = -v.rrrrs_qdd_3_t;
-    /* (rrrrs-qdd_4) acceleration of joint 4 */
+    /* (rrrrs-qdd_4) */
     o[3*count + k] = v.rrrrs_qdd_4;
     o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 5*count);
@@ -5577,11 +5257,11 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_A_V_X(m, w, i, j, s, A, &v);
-    /* (rrrs-qdd_1) acceleration of joint 1 */
+    /* (rrrs-qdd_1) */
     o[0*count + k] = v.rrrs_qdd_1;
-    /* (rrrs-qdd_2) acceleration of joint 2 */
+    /* (rrrs-qdd_2) */
     o[1*count + k] = v.rrrs_qdd_2;
-    /* (rrrs-qdd_3) acceleration of joint 3 */
+    /* (rrrs-qdd_3) */
     o[2*count + k] = v.rrrs_qdd_3;
     o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
@@ -5601,8 +5281,8 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t 
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
@@ -5689,11 +5369,11 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = rrrrs_c_true_x;
     o[1*count + k] = rrrrs_c_true_y;
     o[2*count + k] = rrrrs_c_true_z;
-    /* (rrrrs-w_1) reciprocal vector 1 */
+    /* (rrrrs-w_1) */
     o[3*count + k] = v.rrrrs_w_1_x;
     o[4*count + k] = v.rrrrs_w_1_y;
     o[5*count + k] = v.rrrrs_w_1_z;
-    /* (rrrrs-w_3) reciprocal vector 2 */
+    /* (rrrrs-w_3) */
     o[6*count + k] = -v.rrrrs_w_3_t_8;
     o[7*count + k] = -v.rrrrs_w_3_t_9;
     o[8*count + k] = -v.rrrrs_w_3_t_10;
@@ -5745,11 +5425,11 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
     o[0*count + k] = rrrs_c_true_x;
     o[1*count + k] = rrrs_c_true_y;
     o[2*count + k] = rrrs_c_true_z;
-    /* (rrrs-w_1) reciprocal vector 1 */
+    /* (rrrs-w_1) */
     o[3*count + k] = v.rrrs_w_1_x;
     o[4*count + k] = v.rrrs_w_1_y;
     o[5*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
+    /* (rrrs-w_2) */
     o[6*count + k] = v.rrrs_w_2_x;
     o[7*count + k] = v.rrrs_w_2_y;
     o[8*count + k] = v.rrrs_w_2_z;
@@ -5808,7 +5488,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -5869,7 +5549,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
+    /* (rrrs-h_2) */
     const real rrrs_h_2_in_axes1_z = v.rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] -
         m->rrrs_h_2_in_spec2_y[i]*v.rrrs_s_2;
     /* (potential) */
@@ -5967,7 +5647,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -5978,8 +5658,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rrrrs v;
     stage_rrrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrrrs-G) */
     const real rrrrs_pivot_size = magnitude(v.rrrrs_rho2_1);
     const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_rho2_3);
     const real rrrrs_pivot_size_3 = magnitude(v.rrrrs_v_1_in_axes4_z);
@@ -5988,7 +5667,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         lesser(lesser(lesser(root(m->inv_rrrrs_rho2_3_t[i]*rrrrs_pivot_size_2),
         m->inv_rrrrs_size[i]*rrrrs_pivot_size_3), m->inv_rrrrs_size[i]*rrrrs_pivot_size_4),
         root(m->inv_rrrrs_size_t_3[i]*rrrrs_pivot_size));
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real rrrrs_spread_t = m->b_c_in_platform_x - m->rrrrs_platform_point_x[i];
     const real rrrrs_spread_t_2 = m->b_c_in_platform_y - m->rrrrs_platform_point_y[i];
     const real rrrrs_spread_t_3 = m->b_c_in_platform_z - m->rrrrs_platform_point_z[i];
@@ -5996,7 +5675,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         rrrrs_spread_t_2*rrrrs_spread_t_2 + rrrrs_spread_t_3*rrrrs_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, rrrrs_spread_t_4);  /* spread_rrrrs */
-    any_entries_rrrrs_3(k, count, &v, o);
+    any_entries_rrrrs_2(k, count, &v, o);
     /* (rrrrs-G) */
     o[14*count + k] = rrrrs_least_pivots;
     o[15*count + k] = v.rrrrs_disc_3;
@@ -6037,8 +5716,7 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrrs-G) */
     const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
     const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
     const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
@@ -6091,7 +5769,7 @@ INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rrrrs = sums[0*w + k];
     const real spread_rrrs = sums[1*w + k];
     const real spread_ = root(R(0.3333333333333333)*spread_rrrrs +
@@ -6104,8 +5782,8 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)2)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rrrrs[SUMS_OF_condition*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)]
@@ -6142,7 +5820,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int hybrid_3rrrs_redundant_M(const prepared *m, const real *X, real *M_out)
+NARROW int hybrid_3rrrs_redundant_M(const prepared *m, const real *X, real *M_out)
 {
     real M[NV*NV] CLEARED;
     status_flags why;
@@ -6167,7 +5845,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int hybrid_3rrrs_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int hybrid_3rrrs_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     real Z[NV] CLEARED;
     status_flags why;
@@ -6193,7 +5871,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int hybrid_3rrrs_redundant_H(const prepared *m, const real *X, real *H_out)
+NARROW int hybrid_3rrrs_redundant_H(const prepared *m, const real *X, real *H_out)
 {
     real H[NV*NU] CLEARED;
     status_flags why;
@@ -6218,7 +5896,8 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *m, const real *X, real
+    *q_out)
 {
     real q[NJ] CLEARED;
     status_flags why;
@@ -6243,8 +5922,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int hybrid_3rrrs_redundant_joint_rates(const prepared *m, const real *X, const real *V, real
-    *qd_out)
+NARROW int hybrid_3rrrs_redundant_joint_rates(const prepared *m, const real *X, const real *V,
+    real *qd_out)
 {
     real qd[NJ] CLEARED;
     status_flags why;
@@ -6271,8 +5950,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int hybrid_3rrrs_redundant_joint_accelerations(const prepared *m, const real *X, const real *V,
-    const real *A, real *qdd_out)
+NARROW int hybrid_3rrrs_redundant_joint_accelerations(const prepared *m, const real *X, const real
+    *V, const real *A, real *qdd_out)
 {
     real qdd[NJ] CLEARED;
     status_flags why;
@@ -6300,8 +5979,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int hybrid_3rrrs_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out)
+NARROW int hybrid_3rrrs_redundant_dynamics(const prepared *m, const real *X, const real *V, real
+    *M_out, real *Z_out, real *H_out)
 {
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED;
     status_flags why;
@@ -6336,8 +6015,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out)
+NARROW int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, extend_1[7] CLEARED, subtract_1[NV] CLEARED,
@@ -6387,8 +6066,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NU, tau, tau_out);
 }
 
-int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out)
+NARROW int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, extend_1[7] CLEARED,
@@ -6447,8 +6126,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *X, const real *V,
-    const real *A, const real *wrench, real *completed_out)
+NARROW int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -6461,8 +6140,8 @@ int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *
     return finished(NV, completed, completed_out, &why);
 }
 
-int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const
-    real *A, const real *wrench, real *forces_out)
+NARROW int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 0, 1, 1, 2, 2};
@@ -6480,7 +6159,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *V, real
+NARROW int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *V, real
     *kinetic_out, real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
@@ -6499,8 +6178,8 @@ int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *
     return final_status(&why, 1, potential_out);
 }
 
-int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sigma_out, real
-    *legs_out)
+NARROW int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sigma_out,
+    real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -6533,8 +6212,8 @@ int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sig
     return final_status(&why, NL, legs_out);
 }
 
-int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real *measure_out,
-    real *isotropy_out)
+NARROW int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real
+    *measure_out, real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -6567,7 +6246,7 @@ int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real
     return final_status(&why, 1, isotropy_out);
 }
 
-int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X, real
+NARROW int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X, real
     *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
@@ -6601,7 +6280,7 @@ int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2, 3, 4, 5, 6};
@@ -6622,7 +6301,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real slope[NV*NU] CLEARED;
     status_flags why;
@@ -6681,8 +6360,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_actuated, const
-    real *X0, real *X_out)
+NARROW int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_actuated,
+    const real *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -6692,8 +6371,8 @@ int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_a
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const real *V, real
-    *dissipation_out)
+NARROW int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const real *V,
+    real *dissipation_out)
 {
     (void)m;
     (void)X;
@@ -6708,7 +6387,7 @@ int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const r
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real *V, real
+NARROW int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
@@ -6720,7 +6399,8 @@ int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real
+    *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -6736,7 +6416,8 @@ int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real 
     return final_status(&why, NJ, margins_out);
 }
 
-int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real
+    *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -6750,7 +6431,8 @@ int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real 
     return finished(1, within, within_out, &why);
 }
 
-int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, real
+    *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -6761,8 +6443,8 @@ int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, 
     return finished(NU, q, q_out, &why);
 }
 
-int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
-    *qd_out)
+NARROW int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, const real *V,
+    real *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -6773,8 +6455,8 @@ int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, cons
     return finished(NU, qd, qd_out, &why);
 }
 
-int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
-    const real *A, real *qdd_out)
+NARROW int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real *X, const
+    real *V, const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -6785,8 +6467,8 @@ int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real 
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V, const real *tau,
-    real *power_out)
+NARROW int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V, const
+    real *tau, real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -6798,7 +6480,7 @@ int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V
     return finished(1, power, power_out, &why);
 }
 
-int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
+NARROW int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -6809,7 +6491,7 @@ int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
+NARROW int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] CLEARED;
     status_flags why;
@@ -6823,7 +6505,7 @@ int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, join_1[7] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -6838,7 +6520,7 @@ int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] CLEARED;
     status_flags why;
@@ -6852,7 +6534,7 @@ int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X
     return finished(NQ, X, X_out, &why);
 }
 
-int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, add_2[1] CLEARED, join_1[7] = {0}, X_moved[NQ]
         = {0};
@@ -6875,7 +6557,7 @@ int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_move
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step_out)
+NARROW int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, subtract_2[1] CLEARED, join_1[6] = {0},
         step[NV] = {0};
@@ -6898,7 +6580,8 @@ int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step
     return finished(NV, step, step_out, &why);
 }
 
-int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const real *s, real
+    *X_out)
 {
     real join_2[7] = {0}, scale_1[7] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, add_2[1]
         CLEARED, join_3[7] = {0}, X[NQ] = {0};

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && PLANAR_3PRR_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && PLANAR_3PRR_LANES >= 4 && VECTORS_OF(PLANAR_3PRR_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -608,8 +625,9 @@ static int acceptable(const planar_3prr_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *model)
 {
@@ -625,8 +643,8 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     real b_c_prr_in_platform_x = 0;
     real b_c_prr_in_platform_y = 0;
     real legs_size_prr = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -640,56 +658,53 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_prr); ++leg) {
         const size_t own = leg < LEGS_OF_prr ? leg : 0;
-        const real prr_base_point_x = params->prr_base_point[own][0];
-        const real prr_base_point_y = params->prr_base_point[own][1];
-        const real prr_base_frame_xx = params->prr_base_frame[own][0][0];
-        const real prr_base_frame_xy = params->prr_base_frame[own][0][1];
-        const real prr_base_frame_yx = params->prr_base_frame[own][1][0];
-        const real prr_base_frame_yy = params->prr_base_frame[own][1][1];
-        const real prr_platform_point_x = params->prr_platform_point[own][0];
-        const real prr_platform_point_y = params->prr_platform_point[own][1];
-        const real prr_platform_joint_offset_x = params->prr_platform_joint_offset[own][0];
-        const real prr_link1_mass = params->prr_link1_mass[own];
+        KEEP_OF_LEG(prr_base_point_x, params->prr_base_point[own][0]);
+        KEEP_OF_LEG(prr_base_point_y, params->prr_base_point[own][1]);
+        KEEP_OF_LEG(prr_base_frame_xx, params->prr_base_frame[own][0][0]);
+        KEEP_OF_LEG(prr_base_frame_xy, params->prr_base_frame[own][0][1]);
+        KEEP_OF_LEG(prr_base_frame_yx, params->prr_base_frame[own][1][0]);
+        KEEP_OF_LEG(prr_base_frame_yy, params->prr_base_frame[own][1][1]);
+        KEEP_OF_LEG(prr_platform_point_x, params->prr_platform_point[own][0]);
+        KEEP_OF_LEG(prr_platform_point_y, params->prr_platform_point[own][1]);
+        KEEP_OF_LEG(prr_platform_joint_offset_x, params->prr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(prr_link1_mass, params->prr_link1_mass[own]);
         const real prr_link1_centre_of_mass_x = params->prr_link1_centre_of_mass[own][0];
         const real prr_link1_centre_of_mass_y = params->prr_link1_centre_of_mass[own][1];
-        const real prr_link2_mass = params->prr_link2_mass[own];
+        KEEP_OF_LEG(prr_link2_mass, params->prr_link2_mass[own]);
         const real prr_link2_centre_of_mass_x = params->prr_link2_centre_of_mass[own][0];
         const real prr_link2_centre_of_mass_y = params->prr_link2_centre_of_mass[own][1];
         const real prr_link2_inertia_zz = params->prr_link2_inertia[own][2][2];
         static const signed char signs_prr_branch_1[] = {-1, -1, -1};
-        const real prr_branch_1 = signs_prr_branch_1[own];
+        KEEP_OF_LEG(prr_branch_1, signs_prr_branch_1[own]);
         /* (prr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prr_size_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        KEEP_OF_LEG(prr_size_t, prr_platform_joint_offset_x*prr_platform_joint_offset_x);
         const real prr_size_t_2 = R(2.5e-07) + prr_size_t;
-        const real prr_size = root(prr_size_t_2);
+        KEEP_OF_LEG(prr_size, root(prr_size_t_2));
         /* (prr-h_1) first moment of link 1 about the origin of link 1 */
-        const real prr_h_1_in_spec0_x = prr_link1_centre_of_mass_x*prr_link1_mass;
-        const real prr_h_1_in_spec0_y = prr_link1_centre_of_mass_y*prr_link1_mass;
+        KEEP_OF_LEG(prr_h_1_in_spec0_x, prr_link1_centre_of_mass_x*prr_link1_mass);
+        KEEP_OF_LEG(prr_h_1_in_spec0_y, prr_link1_centre_of_mass_y*prr_link1_mass);
         /* (prr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real prr_rho_tip_2_in_spec2_x = prr_link2_centre_of_mass_x -
             prr_platform_joint_offset_x;
         /* (prr-h_2) first moment of link 2 about the connection point */
-        const real prr_h_2_in_spec2_x = prr_link2_mass*prr_rho_tip_2_in_spec2_x;
-        const real prr_h_2_in_spec2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
+        KEEP_OF_LEG(prr_h_2_in_spec2_x, prr_link2_mass*prr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(prr_h_2_in_spec2_y, prr_link2_centre_of_mass_y*prr_link2_mass);
         /* (prr-J_2) inertia tensor of link 2 about the connection point */
         const real prr_J_2_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
             prr_rho_tip_2_in_spec2_x*prr_rho_tip_2_in_spec2_x;
-        const real prr_J_2_in_spec2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass;
+        KEEP_OF_LEG(prr_J_2_in_spec2_zz, prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass);
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = 1/prr_size_t;
+        KEEP_OF_LEG(inv_prr_size_t, 1/prr_size_t);
         /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
+        KEEP_OF_LEG(prr_g_in_axes0_x, gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx);
         /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
+        KEEP_OF_LEG(prr_g_in_axes0_y, gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy);
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_prr_size = 1/prr_size;
+        KEEP_OF_LEG(inv_prr_size, 1/prr_size);
         /* (h_star) */
         const real prr_h_star_t = prr_link2_mass*prr_platform_point_x;
         const real prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y;
@@ -699,71 +714,39 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         const real prr_J_star_t_3 = prr_J_star_t*prr_link2_mass;
         const real prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass;
         /* (potential) potential energy */
-        const real prr_b_in_axes0_x = prr_base_frame_xx*prr_base_point_x +
-            prr_base_frame_yx*prr_base_point_y;
-        const real prr_potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
-            prr_base_frame_yy*prr_base_point_y);
-        KEEP_OF_LEG(inv_prr_size);
-        KEEP_OF_LEG(inv_prr_size_t);
-        KEEP_OF_LEG(prr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(prr_b_in_axes0_x);
-        KEEP_OF_LEG(prr_base_frame_xx);
-        KEEP_OF_LEG(prr_base_frame_xy);
-        KEEP_OF_LEG(prr_base_frame_yx);
-        KEEP_OF_LEG(prr_base_frame_yy);
-        KEEP_OF_LEG(prr_base_point_x);
-        KEEP_OF_LEG(prr_base_point_y);
-        KEEP_OF_LEG(prr_branch_1);
-        KEEP_OF_LEG(prr_g_in_axes0_x);
-        KEEP_OF_LEG(prr_g_in_axes0_y);
-        KEEP_OF_LEG(prr_h_1_in_spec0_x);
-        KEEP_OF_LEG(prr_h_1_in_spec0_y);
-        KEEP_OF_LEG(prr_h_2_in_spec2_x);
-        KEEP_OF_LEG(prr_h_2_in_spec2_y);
-        KEEP_OF_LEG(prr_link1_mass);
-        KEEP_OF_LEG(prr_link2_mass);
-        KEEP_OF_LEG(prr_platform_joint_offset_x);
-        KEEP_OF_LEG(prr_platform_point_x);
-        KEEP_OF_LEG(prr_platform_point_y);
-        KEEP_OF_LEG(prr_potential_t);
-        KEEP_OF_LEG(prr_size);
-        KEEP_OF_LEG(prr_size_t);
-        m_star_of_legs += leg < LEGS_OF_prr ? prr_link2_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_prr ? prr_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_prr ? prr_h_star_t_2 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_prr ? prr_J_star_t_3 : 0;
-        J_star_t_5_of_legs += leg < LEGS_OF_prr ? prr_J_star_t_4 : 0;
-        b_c_prr_in_platform_x += leg < LEGS_OF_prr ? prr_platform_point_x : 0;
-        b_c_prr_in_platform_y += leg < LEGS_OF_prr ? prr_platform_point_y : 0;
-        legs_size_prr += leg < LEGS_OF_prr ? prr_size_t_2 : 0;
+        KEEP_OF_LEG(prr_b_in_axes0_x, prr_base_frame_xx*prr_base_point_x +
+            prr_base_frame_yx*prr_base_point_y);
+        KEEP_OF_LEG(prr_potential_t, prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
+            prr_base_frame_yy*prr_base_point_y));
+        if (leg < LEGS_OF_prr) {
+            m_star_of_legs += prr_link2_mass;
+            h_star_in_platform_x_of_legs += prr_h_star_t;
+            h_star_in_platform_y_of_legs += prr_h_star_t_2;
+            J_star_in_platform_xx_of_legs += prr_J_star_t_3;
+            J_star_t_5_of_legs += prr_J_star_t_4;
+            b_c_prr_in_platform_x += prr_platform_point_x;
+            b_c_prr_in_platform_y += prr_platform_point_y;
+            legs_size_prr += prr_size_t_2;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
     /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
-    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
+    KEEP(J_star_zz, J_star_in_platform_xx - J_star_t_5);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prr_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prr_in_platform_y;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_prr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_prr_in_platform_y);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_prr)*spread_t;
-    KEEP(J_star_zz);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_prr)*spread_t);
     return OK;
 }
 
@@ -1236,7 +1219,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_2 = X[2*w + k];
     v->R_xx = cosine(X_2);
     v->R_yx = sine(X_2);
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
     v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
 }
@@ -1277,7 +1260,7 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->prr_disc_1 = m->prr_size_t[i] + v->prr_S_in_axes0_x*v->prr_S_in_axes0_x - prr_disc_1_t;
     /* (prr-q_1) displacement of joint 1 */
     v->prr_q_1_t = -m->prr_branch_1[i]*root(v->prr_disc_1);
-    /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (prr-c_2) */
     v->prr_c_2 = m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v->prr_q_1_t;
     /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
     v->prr_s_2 =
@@ -1299,7 +1282,7 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_y;
     v->prr_w_1_y = v->axis_x_prr_axes2_x*v->prr_w_1_in_axes2_y -
         v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_x;
-    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (prr-acc_2) */
     v->prr_g_in_axes2_x = m->prr_g_in_axes0_y[i]*v->prr_s_2 +
         v->prr_c_2*m->prr_g_in_axes0_x[i];
     v->prr_g_in_axes2_y = v->prr_c_2*m->prr_g_in_axes0_y[i] -
@@ -1364,7 +1347,7 @@ INLINE void stage_prr_A_V_X(values_prr *v)
 
 INLINE void stage_prr_Z_dynamics(const prepared *m, size_t i, values_prr *v)
 {
-    /* (prr-u_1) centripetal acceleration of the connection point */
+    /* (prr-u_1) */
     const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_u_1_x -
         v->axis_y_prr_axes2_x*v->prr_u_1_y;
     const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*v->prr_u_1_y +
@@ -1453,19 +1436,18 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
 
 INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 {
-    /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
+    /* (prr-acc_1) */
     const real prr_acc_1_in_axes0_x = v->prr_qdd_1 - m->prr_g_in_axes0_x[i];
     /* (prr-f_1) inertia force of link 1 less its weight */
     const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (prr-acc_2) */
     v->prr_acc_2_in_axes2_x = v->prr_S_ddot_in_axes2_x - v->prr_g_in_axes2_x;
     v->prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y - v->prr_g_in_axes2_y;
     /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real prr_mu_2_in_axes2_z = v->prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
         v->prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
         m->prr_J_2_in_spec2_zz[i]*v->prr_qdd_1_t;
-    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prr-c) */
     const real prr_c_t_3 = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
         prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
     v->prr_c_in_axes2_x = v->prr_c_t - m->prr_h_2_in_spec2_y[i]*v->prr_qdd_1_t -
@@ -1491,10 +1473,10 @@ INLINE void any_sums_prr(size_t k, size_t count, int add, const values_prr *v, r
     gather(&terms[0*count + k], add, v->prr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->prr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->prr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->prr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
@@ -1503,17 +1485,73 @@ INLINE void any_sums_prr_2(size_t k, size_t count, int add, const values_prr *v,
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v->prr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->prr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_prr(size_t k, size_t count, const values_prr *v, real *o)
 {
-    /* (prr-w_1) reciprocal vector 1 */
+    /* (prr-w_1) */
     o[0*count + k] = v->prr_w_1_x;
     o[1*count + k] = v->prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    /* (prr-H_a_1) */
     o[2*count + k] = v->prr_H_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void any_place_prr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1557,7 +1595,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
@@ -1586,59 +1624,15 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[4*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[3*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[5*w + k];
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[6*w + k];
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[7*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-        + (Z_t_y + Z_a_z)));
+    any_after(m, w, k, s + 3*w, sums, M, t);
+    any_after_2(w, k, s + 5*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)8)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_prr[SUMS_OF_dynamics*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
@@ -1710,41 +1704,13 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[4*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[3*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+    any_after(m, w, k, s + 3*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)5)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_prr[SUMS_OF_M*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
@@ -1763,7 +1729,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -1794,10 +1760,10 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    /* (Z_q) */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[3*w + k] = Z_p_x;
     s[4*w + k] = Z_p_y;
@@ -1818,23 +1784,7 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[3*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[4*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[5*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
+    any_after_2(w, k, s + 3*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)6)
@@ -1860,7 +1810,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -1902,7 +1852,7 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)3)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
@@ -1949,7 +1899,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_x = t_ddot_x - m->gravity_x;
     const real t_ddot_y = A[1*w + k];
     const real a_t_y = t_ddot_y - m->gravity_y;
-    /* (f_p) inertia force of the platform less its weight */
+    /* (f_p) */
     const real alpha_z = A[2*w + k];
     const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y - v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
@@ -1970,15 +1920,14 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prr_V_X(m, w, i, j, s, V, &v);
     stage_prr_A_V_X(&v);
     stage_prr_legs_required(m, i, &v);
-    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prr-c) */
     const real prr_c_x = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_x +
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_y;
     const real prr_c_y = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_y -
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real prr_R_a_t = prr_c_x*v.prr_q_y - prr_c_y*v.prr_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, prr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
@@ -2000,14 +1949,14 @@ INLINE void required_place_prr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2045,8 +1994,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_prr[5*LANES];
@@ -2079,7 +2028,7 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, s
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-q_1) displacement of joint 1 */
+    /* (prr-q_1) */
     const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
     /* (prr-q_2) displacement of joint 2 */
     const real prr_q_2 = angle(v.prr_s_2, v.prr_c_2);
@@ -2102,7 +2051,8 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)3)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_prr[4*LEGS(LEGS_OF_prr)] CLEARED;
@@ -2146,7 +2096,7 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_V_X(m, w, i, j, s, V, &v);
-    /* (prr-qd_1) rate of joint 1 */
+    /* (prr-qd_1) */
     const real prr_qd_1 = v.prr_S_dot_x*m->prr_base_frame_xx[i] +
         v.prr_S_dot_y*m->prr_base_frame_yx[i] + v.prr_qd_1_t*v.prr_v_2_in_axes0_x;
     /* (prr-qd_1) */
@@ -2170,8 +2120,8 @@ INLINE void joint_rates_place_prr(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)3)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
@@ -2217,7 +2167,7 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     stage_prr_A_X(w, j, A, &v);
     stage_prr_V_X(m, w, i, j, s, V, &v);
     stage_prr_A_V_X(&v);
-    /* (prr-qdd_1) acceleration of joint 1 */
+    /* (prr-qdd_1) */
     o[0*count + k] = v.prr_qdd_1;
     /* (prr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.prr_qdd_1_t;
@@ -2238,8 +2188,8 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)3)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
@@ -2298,7 +2248,7 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (prr-c_true) */
     o[0*count + k] = prr_c_true_x;
     o[1*count + k] = prr_c_true_y;
-    /* (prr-w_1) reciprocal vector 1 */
+    /* (prr-w_1) */
     o[2*count + k] = v.prr_w_1_x;
     o[3*count + k] = v.prr_w_1_y;
     o[4*count + k] = UNLESS(v.prr_disc_1 >= 0);
@@ -2342,7 +2292,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
@@ -2355,7 +2305,7 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-q_1) displacement of joint 1 */
+    /* (prr-q_1) */
     const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
     /* (potential) */
     const real prr_potential_t_2 = m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] +
@@ -2416,7 +2366,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -2426,8 +2376,7 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (prr-G) */
     const real prr_pivot_size = magnitude(v.prr_v_2_in_axes0_y);
     const real prr_pivot = m->inv_prr_size[i]*prr_pivot_size;
     /* (spread) */
@@ -2462,7 +2411,7 @@ INLINE void condition_place_prr(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_prr = sums[0*w + k];
     const real spread_ = root(spread_prr)*m->spread_t;
     /* (spread) */
@@ -2473,8 +2422,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)3)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_prr[SUMS_OF_condition*LEGS(LEGS_OF_prr)] CLEARED, o_prr[8*LEGS(LEGS_OF_prr)] CLEARED;
@@ -2495,7 +2444,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int planar_3prr_M(const prepared *m, const real *X, real *M_out)
+NARROW int planar_3prr_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2518,7 +2467,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int planar_3prr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int planar_3prr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2542,7 +2491,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int planar_3prr_H(const prepared *m, const real *X, real *H_out)
+NARROW int planar_3prr_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2565,7 +2514,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int planar_3prr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int planar_3prr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2588,7 +2537,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int planar_3prr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_3prr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2613,8 +2562,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int planar_3prr_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_3prr_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2640,7 +2589,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int planar_3prr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int planar_3prr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     status_flags why;
@@ -2723,8 +2672,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1, 2};
 static const real sizes_tau[] = {1.0, 1.0, 0.25};
 
-int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -2773,8 +2722,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {16.0, 16.0, 0.25};
 
-int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out)
+NARROW int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2830,8 +2779,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int planar_3prr_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int planar_3prr_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2844,8 +2793,8 @@ int planar_3prr_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
@@ -2863,8 +2812,8 @@ int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -2882,7 +2831,8 @@ int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -2915,7 +2865,7 @@ int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
@@ -2949,8 +2899,8 @@ int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int planar_3prr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int planar_3prr_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -2983,7 +2933,7 @@ int planar_3prr_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[3] = {0}, residual[NU] CLEARED;
@@ -2998,7 +2948,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -3055,8 +3005,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -3066,7 +3016,7 @@ int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -3082,7 +3032,8 @@ int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -3093,7 +3044,7 @@ int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -3109,7 +3060,7 @@ int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -3123,7 +3074,7 @@ int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -3134,7 +3085,8 @@ int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3145,8 +3097,8 @@ int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3157,8 +3109,8 @@ int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int planar_3prr_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int planar_3prr_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -3170,7 +3122,7 @@ int planar_3prr_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int planar_3prr_rotation(const real *X, real *R_out)
+NARROW int planar_3prr_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     status_flags why;
@@ -3181,19 +3133,18 @@ int planar_3prr_rotation(const real *X, real *R_out)
     return finished(4, R, R_out, &why);
 }
 
-int planar_3prr_pose(const real *t, const real *R, real *X_out)
+NARROW int planar_3prr_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
+    real angle_of_rotation_1[1] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 2, 1, t, angle_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     status_flags why;
     start(1, &why);
@@ -3202,7 +3153,7 @@ int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -3214,7 +3165,7 @@ int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
+NARROW int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] CLEARED, step[NV] CLEARED;
@@ -3231,7 +3182,7 @@ int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int planar_3prr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int planar_3prr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

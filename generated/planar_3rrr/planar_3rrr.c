@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && PLANAR_3RRR_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && PLANAR_3RRR_LANES >= 4 && VECTORS_OF(PLANAR_3RRR_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -616,8 +633,9 @@ static int acceptable(const planar_3rrr_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *model)
 {
@@ -633,8 +651,8 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
     real b_c_rrr_in_platform_x = 0;
     real b_c_rrr_in_platform_y = 0;
     real legs_size_rrr = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -648,87 +666,84 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rrr); ++leg) {
         const size_t own = leg < LEGS_OF_rrr ? leg : 0;
-        const real rrr_base_point_x = params->rrr_base_point[own][0];
-        const real rrr_base_point_y = params->rrr_base_point[own][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        KEEP_OF_LEG(rrr_base_point_x, params->rrr_base_point[own][0]);
+        KEEP_OF_LEG(rrr_base_point_y, params->rrr_base_point[own][1]);
+        KEEP_OF_LEG(rrr_base_frame_xx, params->rrr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrr_base_frame_xy, params->rrr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrr_base_frame_yx, params->rrr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrr_base_frame_yy, params->rrr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrr_platform_point_x, params->rrr_platform_point[own][0]);
+        KEEP_OF_LEG(rrr_platform_point_y, params->rrr_platform_point[own][1]);
+        KEEP_OF_LEG(rrr_joint2_offset_x, params->rrr_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x, params->rrr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrr_link1_mass, params->rrr_link1_mass[own]);
         const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
         const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
         const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        KEEP_OF_LEG(rrr_link2_mass, params->rrr_link2_mass[own]);
         const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
         const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1, 1, 1};
-        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        KEEP_OF_LEG(rrr_branch_1, signs_rrr_branch_1[own]);
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         const real rrr_size_t_3 = R(4.58151643161e-07) + rrr_size_t + rrr_size_t_2;
-        const real rrr_size = root(rrr_size_t_3);
+        KEEP_OF_LEG(rrr_size, root(rrr_size_t_3));
         /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x, rrr_link1_centre_of_mass_x*rrr_link1_mass);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y, rrr_link1_centre_of_mass_y*rrr_link1_mass);
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz, rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass);
         /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
             rrr_platform_joint_offset_x;
         /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x, rrr_link2_mass*rrr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y, rrr_link2_centre_of_mass_y*rrr_link2_mass);
         /* (rrr-J_2) inertia tensor of link 2 about the connection point */
         const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
             rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz, rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass);
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        KEEP_OF_LEG(rrr_Kd_1_t, R(0.5)*rrr_size_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2, R(0.5)*rrr_size_t_2);
         /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        KEEP_OF_LEG(rrr_rho2_1_t, rrr_size*rrr_size*rrr_size_t_3);
         /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = 1/rrr_size_t;
+        KEEP_OF_LEG(inv_rrr_size_t, 1/rrr_size_t);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        KEEP_OF_LEG(inv_rrr_size_t_2, 1/rrr_size_t_2);
         /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y, 1/rrr_platform_joint_offset_x);
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy, -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y);
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz, rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz);
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
-        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        KEEP_OF_LEG(rrr_d_Gamma_2_t, rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x);
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        KEEP_OF_LEG(rrr_mu_1_t, gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_mu_1_t_2, gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
-        const real inv_rrr_size = 1/rrr_size;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t, 1/rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size, 1/rrr_size);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
-            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy, -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y);
         /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -738,83 +753,39 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
         /* (potential) potential energy */
-        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
-            rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
-            rrr_base_frame_yy*rrr_base_point_y;
-        KEEP_OF_LEG(inv_rrr_rho2_1_t);
-        KEEP_OF_LEG(inv_rrr_size);
-        KEEP_OF_LEG(inv_rrr_size_t);
-        KEEP_OF_LEG(inv_rrr_size_t_2);
-        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
-        KEEP_OF_LEG(rrr_Kd_1_t);
-        KEEP_OF_LEG(rrr_Kd_1_t_2);
-        KEEP_OF_LEG(rrr_base_frame_xx);
-        KEEP_OF_LEG(rrr_base_frame_xy);
-        KEEP_OF_LEG(rrr_base_frame_yx);
-        KEEP_OF_LEG(rrr_base_frame_yy);
-        KEEP_OF_LEG(rrr_base_point_x);
-        KEEP_OF_LEG(rrr_base_point_y);
-        KEEP_OF_LEG(rrr_branch_1);
-        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
-        KEEP_OF_LEG(rrr_d_Gamma_2_t);
-        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrr_joint2_offset_x);
-        KEEP_OF_LEG(rrr_link1_mass);
-        KEEP_OF_LEG(rrr_link2_mass);
-        KEEP_OF_LEG(rrr_mu_1_t);
-        KEEP_OF_LEG(rrr_mu_1_t_2);
-        KEEP_OF_LEG(rrr_platform_joint_offset_x);
-        KEEP_OF_LEG(rrr_platform_point_x);
-        KEEP_OF_LEG(rrr_platform_point_y);
-        KEEP_OF_LEG(rrr_potential_t);
-        KEEP_OF_LEG(rrr_potential_t_2);
-        KEEP_OF_LEG(rrr_rho2_1_t);
-        KEEP_OF_LEG(rrr_size);
-        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
-        m_star_of_legs += leg < LEGS_OF_rrr ? rrr_link2_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_rrr ? rrr_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_rrr ? rrr_h_star_t_2 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_rrr ? rrr_J_star_t_3 : 0;
-        J_star_t_5_of_legs += leg < LEGS_OF_rrr ? rrr_J_star_t_4 : 0;
-        b_c_rrr_in_platform_x += leg < LEGS_OF_rrr ? rrr_platform_point_x : 0;
-        b_c_rrr_in_platform_y += leg < LEGS_OF_rrr ? rrr_platform_point_y : 0;
-        legs_size_rrr += leg < LEGS_OF_rrr ? rrr_size_t_3 : 0;
+        KEEP_OF_LEG(rrr_potential_t, rrr_base_frame_xx*rrr_base_point_x +
+            rrr_base_frame_yx*rrr_base_point_y);
+        KEEP_OF_LEG(rrr_potential_t_2, rrr_base_frame_xy*rrr_base_point_x +
+            rrr_base_frame_yy*rrr_base_point_y);
+        if (leg < LEGS_OF_rrr) {
+            m_star_of_legs += rrr_link2_mass;
+            h_star_in_platform_x_of_legs += rrr_h_star_t;
+            h_star_in_platform_y_of_legs += rrr_h_star_t_2;
+            J_star_in_platform_xx_of_legs += rrr_J_star_t_3;
+            J_star_t_5_of_legs += rrr_J_star_t_4;
+            b_c_rrr_in_platform_x += rrr_platform_point_x;
+            b_c_rrr_in_platform_y += rrr_platform_point_y;
+            legs_size_rrr += rrr_size_t_3;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
     /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
-    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
+    KEEP(J_star_zz, J_star_in_platform_xx - J_star_t_5);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rrr_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rrr_in_platform_y;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_rrr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_rrr_in_platform_y);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_rrr)*spread_t;
-    KEEP(J_star_zz);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(legs_size_rrr)*spread_t);
     return OK;
 }
 
@@ -1287,7 +1258,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_2 = X[2*w + k];
     v->R_xx = cosine(X_2);
     v->R_yx = sine(X_2);
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
     v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
 }
@@ -1322,8 +1293,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
     const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
+    /* (rrr-Kd_1) */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
     const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
@@ -1332,7 +1302,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
+    /* (rrr-rho2_1) */
     v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
@@ -1343,10 +1313,10 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    /* (rrr-x_2) */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (rrr-c_2) */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrr_s_2_t =
@@ -1371,7 +1341,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rrr_axes2_x*m->gravity_y;
     v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
         v->axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
     v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
@@ -1393,7 +1363,7 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-S_dot) velocity of the connection point */
+    /* (rrr-S_dot) */
     const real omega_z = V[2*w + j];
     const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
     const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
@@ -1446,7 +1416,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-u_1) centripetal acceleration of the connection point */
+    /* (rrr-u_1) */
     const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
         v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
     const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
@@ -1497,11 +1467,10 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-w_2) reciprocal vector 2 */
+    /* (rrr-w_2) */
     const real rrr_w_2_in_axes2_x =
         v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (rrr-d_Gamma_2) */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
     const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
@@ -1509,8 +1478,7 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        inertia and weight */
     const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrr-d_c) */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
@@ -1536,24 +1504,22 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
     const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
-    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rrr-acc_2) */
     v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
         v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
         m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
@@ -1587,10 +1553,10 @@ INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, r
     gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
@@ -1599,17 +1565,73 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrr-H_a_1) */
     o[2*count + k] = v->rrr_H_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1633,7 +1655,7 @@ INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *
 {
     stage_V(w, k, V, v);
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = v->f_p_t - m->Z_p_t;
     const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
@@ -1663,59 +1685,15 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[4*w + k];
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[5*w + k];
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-        + (Z_t_y + Z_a_z)));
+    any_after(m, w, k, s + 2*w, sums, M, t);
+    any_after_2(w, k, s + 4*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)7)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -1779,41 +1757,13 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+    any_after(m, w, k, s + 2*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)4)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -1832,7 +1782,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -1864,10 +1814,10 @@ INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, valu
 {
     stage_V(w, k, V, v);
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = v->f_p_t - m->Z_p_t;
     const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    /* (Z_q) */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
@@ -1889,23 +1839,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[2*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[3*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
+    any_after_2(w, k, s + 2*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)5)
@@ -1931,7 +1865,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -1974,7 +1908,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)2)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -2022,7 +1956,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_x = t_ddot_x - m->gravity_x;
     const real t_ddot_y = A[1*w + k];
     const real a_t_y = t_ddot_y - m->gravity_y;
-    /* (f_p) inertia force of the platform less its weight */
+    /* (f_p) */
     const real alpha_z = A[2*w + k];
     const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x + v->f_p_t_2;
@@ -2043,15 +1977,14 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
         v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
@@ -2074,14 +2007,14 @@ INLINE void required_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[2*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[3*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2119,8 +2052,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrr[5*LANES];
@@ -2178,7 +2111,8 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)2)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -2222,9 +2156,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-qd_1) */
     o[0*count + k] = -v.rrr_qd_1_t;
-    /* (rrr-qd_2) rate of joint 2 */
+    /* (rrr-qd_2) */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -2244,8 +2178,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)2)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -2291,9 +2225,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
-    /* (rrr-qdd_1) acceleration of joint 1 */
+    /* (rrr-qdd_1) */
     o[0*count + k] = -v.rrr_qdd_1_t;
-    /* (rrr-qdd_2) acceleration of joint 2 */
+    /* (rrr-qdd_2) */
     o[1*count + k] = v.rrr_qdd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -2313,8 +2247,8 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)2)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -2373,7 +2307,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-c_true) */
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
@@ -2418,7 +2352,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
@@ -2488,7 +2422,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -2498,8 +2432,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
     const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
     const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
@@ -2537,7 +2470,7 @@ INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rrr = sums[0*w + k];
     const real spread_ = root(spread_rrr)*m->spread_t;
     /* (spread) */
@@ -2548,8 +2481,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)2)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
@@ -2570,7 +2503,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int planar_3rrr_M(const prepared *m, const real *X, real *M_out)
+NARROW int planar_3rrr_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2593,7 +2526,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int planar_3rrr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int planar_3rrr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2617,7 +2550,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int planar_3rrr_H(const prepared *m, const real *X, real *H_out)
+NARROW int planar_3rrr_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2640,7 +2573,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int planar_3rrr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int planar_3rrr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2663,7 +2596,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int planar_3rrr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_3rrr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2688,8 +2621,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int planar_3rrr_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_3rrr_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2715,7 +2648,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int planar_3rrr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int planar_3rrr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     status_flags why;
@@ -2798,8 +2731,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {1, 0, 2};
 static const real sizes_tau[] = {4.0, 4.0, 0.25};
 
-int planar_3rrr_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int planar_3rrr_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -2848,8 +2781,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {4.0, 4.0, 0.25};
 
-int planar_3rrr_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out)
+NARROW int planar_3rrr_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2905,8 +2838,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int planar_3rrr_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int planar_3rrr_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2919,8 +2852,8 @@ int planar_3rrr_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int planar_3rrr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int planar_3rrr_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
@@ -2938,8 +2871,8 @@ int planar_3rrr_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int planar_3rrr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int planar_3rrr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -2957,7 +2890,8 @@ int planar_3rrr_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int planar_3rrr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int planar_3rrr_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -2990,7 +2924,7 @@ int planar_3rrr_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int planar_3rrr_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int planar_3rrr_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
@@ -3024,8 +2958,8 @@ int planar_3rrr_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int planar_3rrr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int planar_3rrr_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -3058,7 +2992,7 @@ int planar_3rrr_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2};
@@ -3079,7 +3013,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -3136,8 +3070,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int planar_3rrr_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int planar_3rrr_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -3147,7 +3081,7 @@ int planar_3rrr_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_3rrr_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int planar_3rrr_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -3163,7 +3097,8 @@ int planar_3rrr_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int planar_3rrr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int planar_3rrr_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -3174,7 +3109,7 @@ int planar_3rrr_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int planar_3rrr_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int planar_3rrr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -3190,7 +3125,7 @@ int planar_3rrr_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int planar_3rrr_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int planar_3rrr_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -3204,7 +3139,7 @@ int planar_3rrr_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int planar_3rrr_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int planar_3rrr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -3215,7 +3150,8 @@ int planar_3rrr_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int planar_3rrr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_3rrr_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3226,8 +3162,8 @@ int planar_3rrr_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int planar_3rrr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_3rrr_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3238,8 +3174,8 @@ int planar_3rrr_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int planar_3rrr_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int planar_3rrr_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -3251,7 +3187,7 @@ int planar_3rrr_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int planar_3rrr_rotation(const real *X, real *R_out)
+NARROW int planar_3rrr_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     status_flags why;
@@ -3262,19 +3198,18 @@ int planar_3rrr_rotation(const real *X, real *R_out)
     return finished(4, R, R_out, &why);
 }
 
-int planar_3rrr_pose(const real *t, const real *R, real *X_out)
+NARROW int planar_3rrr_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
+    real angle_of_rotation_1[1] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 2, 1, t, angle_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_3rrr_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int planar_3rrr_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     status_flags why;
     start(1, &why);
@@ -3283,7 +3218,7 @@ int planar_3rrr_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int planar_3rrr_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int planar_3rrr_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -3295,7 +3230,7 @@ int planar_3rrr_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int planar_3rrr_difference(const real *X0, const real *X1, real *step_out)
+NARROW int planar_3rrr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] CLEARED, step[NV] CLEARED;
@@ -3312,7 +3247,7 @@ int planar_3rrr_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int planar_3rrr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int planar_3rrr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

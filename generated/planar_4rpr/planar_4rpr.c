@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && PLANAR_4RPR_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && PLANAR_4RPR_LANES >= 4 && VECTORS_OF(PLANAR_4RPR_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +293,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +308,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +414,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -613,8 +630,9 @@ static int acceptable(const planar_4rpr_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *model)
 {
@@ -629,8 +647,8 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
     real J_star_t_5_of_legs = 0;
     real b_c_rpr_in_platform_x = 0;
     real b_c_rpr_in_platform_y = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -643,41 +661,39 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         const size_t own = leg;
-        const real rpr_base_point_x = params->rpr_base_point[own][0];
-        const real rpr_base_point_y = params->rpr_base_point[own][1];
-        const real rpr_base_frame_xx = params->rpr_base_frame[own][0][0];
-        const real rpr_base_frame_xy = params->rpr_base_frame[own][0][1];
-        const real rpr_base_frame_yx = params->rpr_base_frame[own][1][0];
-        const real rpr_base_frame_yy = params->rpr_base_frame[own][1][1];
-        const real rpr_platform_point_x = params->rpr_platform_point[own][0];
-        const real rpr_platform_point_y = params->rpr_platform_point[own][1];
-        const real rpr_link1_mass = params->rpr_link1_mass[own];
+        KEEP_OF_LEG(rpr_base_point_x, params->rpr_base_point[own][0]);
+        KEEP_OF_LEG(rpr_base_point_y, params->rpr_base_point[own][1]);
+        KEEP_OF_LEG(rpr_base_frame_xx, params->rpr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rpr_base_frame_xy, params->rpr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rpr_base_frame_yx, params->rpr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rpr_base_frame_yy, params->rpr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rpr_platform_point_x, params->rpr_platform_point[own][0]);
+        KEEP_OF_LEG(rpr_platform_point_y, params->rpr_platform_point[own][1]);
+        KEEP_OF_LEG(rpr_link1_mass, params->rpr_link1_mass[own]);
         const real rpr_link1_centre_of_mass_x = params->rpr_link1_centre_of_mass[own][0];
         const real rpr_link1_centre_of_mass_y = params->rpr_link1_centre_of_mass[own][1];
         const real rpr_link1_inertia_zz = params->rpr_link1_inertia[own][2][2];
-        const real rpr_link2_mass = params->rpr_link2_mass[own];
+        KEEP_OF_LEG(rpr_link2_mass, params->rpr_link2_mass[own]);
         const real rpr_link2_centre_of_mass_x = params->rpr_link2_centre_of_mass[own][0];
         const real rpr_link2_centre_of_mass_y = params->rpr_link2_centre_of_mass[own][1];
         const real rpr_link2_inertia_zz = params->rpr_link2_inertia[own][2][2];
         static const signed char signs_rpr_branch_1[] = {1, 1, 1, 1};
-        const real rpr_branch_1 = signs_rpr_branch_1[own];
+        KEEP_OF_LEG(rpr_branch_1, signs_rpr_branch_1[own]);
         /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
-        const real rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
+        KEEP_OF_LEG(rpr_h_1_in_spec1_x, rpr_link1_centre_of_mass_x*rpr_link1_mass);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_y, rpr_link1_centre_of_mass_y*rpr_link1_mass);
         /* (rpr-h_2) first moment of link 2 about the connection point */
-        const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
-        const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
+        KEEP_OF_LEG(rpr_h_2_in_spec1_x, rpr_link2_centre_of_mass_x*rpr_link2_mass);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_y, rpr_link2_centre_of_mass_y*rpr_link2_mass);
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
         const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
             rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
         const real rpr_J_group_1_t_2 = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
             rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
-        const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
-            rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass;
+        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz, rpr_link1_inertia_zz + rpr_link2_inertia_zz +
+            rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass);
         /* (h_star) */
         const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
         const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
@@ -687,32 +703,12 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
         const real rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass;
         /* (potential) potential energy */
-        const real rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
-        const real rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x +
-            rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x +
-            rpr_base_frame_yy*rpr_base_point_y;
-        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
-        KEEP_OF_LEG(rpr_base_frame_xx);
-        KEEP_OF_LEG(rpr_base_frame_xy);
-        KEEP_OF_LEG(rpr_base_frame_yx);
-        KEEP_OF_LEG(rpr_base_frame_yy);
-        KEEP_OF_LEG(rpr_base_point_x);
-        KEEP_OF_LEG(rpr_base_point_y);
-        KEEP_OF_LEG(rpr_branch_1);
-        KEEP_OF_LEG(rpr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rpr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rpr_h_2_in_spec1_x);
-        KEEP_OF_LEG(rpr_h_2_in_spec1_y);
-        KEEP_OF_LEG(rpr_link1_mass);
-        KEEP_OF_LEG(rpr_link2_mass);
-        KEEP_OF_LEG(rpr_platform_point_x);
-        KEEP_OF_LEG(rpr_platform_point_y);
-        KEEP_OF_LEG(rpr_potential_t);
-        KEEP_OF_LEG(rpr_potential_t_2);
-        KEEP_OF_LEG(rpr_potential_t_3);
-        KEEP_OF_LEG(rpr_potential_t_4);
+        KEEP_OF_LEG(rpr_potential_t, gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx);
+        KEEP_OF_LEG(rpr_potential_t_2, gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy);
+        KEEP_OF_LEG(rpr_potential_t_3, rpr_base_frame_xx*rpr_base_point_x +
+            rpr_base_frame_yx*rpr_base_point_y);
+        KEEP_OF_LEG(rpr_potential_t_4, rpr_base_frame_xy*rpr_base_point_x +
+            rpr_base_frame_yy*rpr_base_point_y);
         m_star_of_legs += rpr_link2_mass;
         h_star_in_platform_x_of_legs += rpr_h_star_t;
         h_star_in_platform_y_of_legs += rpr_h_star_t_2;
@@ -722,29 +718,21 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         b_c_rpr_in_platform_y += rpr_platform_point_y;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
     /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
-    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
+    KEEP(J_star_zz, J_star_in_platform_xx - J_star_t_5);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.25)*b_c_rpr_in_platform_x;
-    const real b_c_in_platform_y = R(0.25)*b_c_rpr_in_platform_y;
-    KEEP(J_star_zz);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.25)*b_c_rpr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.25)*b_c_rpr_in_platform_y);
     return OK;
 }
 
@@ -1442,7 +1430,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_2 = X[2*w + k];
     v->R_xx = cosine(X_2);
     v->R_yx = sine(X_2);
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
     v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
 }
@@ -1512,7 +1500,7 @@ INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
 INLINE void stage_rpr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rpr *v)
 {
-    /* (rpr-S_dot) velocity of the connection point */
+    /* (rpr-S_dot) */
     const real omega_z = V[2*w + j];
     const real rpr_S_dot_t = omega_z*v->rpr_q_y;
     const real rpr_S_dot_t_2 = omega_z*v->rpr_q_x;
@@ -1556,7 +1544,7 @@ INLINE void stage_rpr_A_V_X(values_rpr *v)
 
 INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-u_1) centripetal acceleration of the connection point */
+    /* (rpr-u_1) */
     const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
         v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
     /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -1615,17 +1603,16 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
 
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rpr-acc_2) */
     v->rpr_acc_2_in_axes1_x = v->rpr_S_ddot_in_axes1_x - v->rpr_g_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_g_in_axes1_y;
-    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    /* (rpr-phi_2) */
     v->rpr_phi_2_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
-    /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rpr-mu_1) */
     const real rpr_mu_1_in_axes1_z = v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
         v->rpr_mu_1_t - v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
-    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rpr-c) */
     v->rpr_c_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*v->rpr_qdd_1 -
         v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
@@ -1655,10 +1642,10 @@ INLINE void any_sums_rpr(size_t k, size_t count, int add, const values_rpr *v, r
     gather(&terms[0*count + k], add, v->rpr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rpr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rpr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rpr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
@@ -1667,7 +1654,7 @@ INLINE void any_sums_rpr_2(size_t k, size_t count, int add, const values_rpr *v,
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v->rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rpr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rpr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
@@ -1676,8 +1663,64 @@ INLINE void any_entries_rpr(size_t k, size_t count, const values_rpr *v, real *o
     /* (rpr-w_2) reciprocal vector 2 */
     o[0*count + k] = v->axis_x_rpr_axes1_x;
     o[1*count + k] = v->axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    /* (rpr-H_a_2) */
     o[2*count + k] = v->rpr_H_a_2_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1700,7 +1743,7 @@ INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *
 {
     stage_V(w, k, V, v);
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = v->f_p_t - m->Z_p_t;
     const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
@@ -1729,59 +1772,15 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[4*w + k];
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[5*w + k];
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-        + (Z_t_y + Z_a_z)));
+    any_after(m, w, k, s + 2*w, sums, M, t);
+    any_after_2(w, k, s + 4*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)7)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rpr[SUMS_OF_dynamics*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -1844,41 +1843,13 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+    any_after(m, w, k, s + 2*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)4)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rpr[SUMS_OF_M*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
@@ -1897,7 +1868,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -1929,10 +1900,10 @@ INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, valu
 {
     stage_V(w, k, V, v);
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = v->f_p_t - m->Z_p_t;
     const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    /* (Z_q) */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
@@ -1953,23 +1924,7 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[2*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[3*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
+    any_after_2(w, k, s + 2*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)5)
@@ -1995,7 +1950,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2037,7 +1992,7 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)2)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2085,7 +2040,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_x = t_ddot_x - m->gravity_x;
     const real t_ddot_y = A[1*w + k];
     const real a_t_y = t_ddot_y - m->gravity_y;
-    /* (f_p) inertia force of the platform less its weight */
+    /* (f_p) */
     const real alpha_z = A[2*w + k];
     const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x + v->f_p_t_2;
@@ -2106,15 +2061,14 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
-    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rpr-c) */
     const real rpr_c_x = -v.axis_x_rpr_axes1_x*v.rpr_phi_2_in_axes1_x -
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
         v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
@@ -2135,14 +2089,14 @@ INLINE void required_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[2*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[3*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2156,8 +2110,8 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 #define PASSED_IN_required ((size_t)5)
 #define SUMS_OF_required ((size_t)3)
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, status_flags *t)
+NARROW APART void required_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *required, real *H, status_flags *t)
 {
     real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
     real terms_rpr[SUMS_OF_required*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2186,7 +2140,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    /* (rpr-c_1) */
     const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
     /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
     const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
@@ -2194,7 +2148,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
     const real rpr_q_1 = angle(rpr_s_1, rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
-    /* (rpr-q_2) displacement of joint 2 */
+    /* (rpr-q_2) */
     o[1*count + k] = v.rpr_q_2;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
@@ -2212,7 +2166,8 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)2)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2256,7 +2211,7 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
-    /* (rpr-qd_1) rate of joint 1 */
+    /* (rpr-qd_1) */
     o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rpr_S_dot_in_axes1_x;
@@ -2276,8 +2231,8 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)2)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2323,9 +2278,9 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     stage_rpr_A_X(w, j, A, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_A_V_X(&v);
-    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    /* (rpr-rel) */
     const real rpr_rel_in_axes1_x = v.rpr_S_ddot_in_axes1_x - v.rpr_W_1_in_axes1_xx*v.rpr_q_2;
-    /* (rpr-qdd_1) acceleration of joint 1 */
+    /* (rpr-qdd_1) */
     o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
@@ -2345,8 +2300,8 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)2)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2405,7 +2360,7 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rpr-c_true) */
     o[0*count + k] = rpr_c_true_x;
     o[1*count + k] = rpr_c_true_y;
-    /* (rpr-w_2) reciprocal vector 2 */
+    /* (rpr-w_2) */
     o[2*count + k] = v.axis_x_rpr_axes1_x;
     o[3*count + k] = v.axis_x_rpr_axes1_y;
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
@@ -2448,7 +2403,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
@@ -2461,9 +2416,9 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    /* (rpr-c_1) */
     const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    /* (rpr-s_1) */
     const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (potential) */
     const real rpr_potential_t_5 = (rpr_c_1*m->rpr_potential_t[i] +
@@ -2538,7 +2493,7 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
     const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
         R(1.6129032258064517)*rpr_pivot_size_2);
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
     const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
     const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
@@ -2566,7 +2521,7 @@ INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rpr = sums[0*w + k];
     const real spread_ = R(0.5)*root(spread_rpr);
     /* (spread) */
@@ -2577,8 +2532,8 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 #define PASSED_IN_condition ((size_t)2)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rpr[SUMS_OF_condition*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2600,7 +2555,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int planar_4rpr_M(const prepared *m, const real *X, real *M_out)
+NARROW int planar_4rpr_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2623,7 +2578,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int planar_4rpr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int planar_4rpr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2647,7 +2602,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int planar_4rpr_H(const prepared *m, const real *X, real *H_out)
+NARROW int planar_4rpr_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2670,7 +2625,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int planar_4rpr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int planar_4rpr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2693,7 +2648,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int planar_4rpr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_4rpr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2718,8 +2673,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int planar_4rpr_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_4rpr_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2745,7 +2700,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int planar_4rpr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int planar_4rpr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     status_flags why;
@@ -2777,8 +2732,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, const real *weights, real *tau_out)
+NARROW static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, const real *weights, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     static const real no_weights[NU] = {1, 1, 1, 1};
@@ -2858,8 +2813,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {16.0, 16.0, 0.25};
 
-int planar_4rpr_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out)
+NARROW int planar_4rpr_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2915,8 +2870,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int planar_4rpr_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int planar_4rpr_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2929,8 +2884,8 @@ int planar_4rpr_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3};
@@ -2953,8 +2908,8 @@ int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(3*NL, forces, forces_out, &why);
 }
 
-int planar_4rpr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int planar_4rpr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -2972,7 +2927,7 @@ int planar_4rpr_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int planar_4rpr_null_space(const prepared *m, const real *X, real *basis_out)
+NARROW int planar_4rpr_null_space(const prepared *m, const real *X, real *basis_out)
 {
     real H[NV*NU] CLEARED, basis[NU] = {0};
     status_flags why;
@@ -2983,7 +2938,8 @@ int planar_4rpr_null_space(const prepared *m, const real *X, real *basis_out)
     return finished(NU, basis, basis_out, &why);
 }
 
-int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -3016,7 +2972,7 @@ int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
@@ -3050,8 +3006,8 @@ int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -3084,9 +3040,9 @@ int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-int planar_4rpr_force_distribution(const prepared *m, const real *X, const real *V, const real *A,
-    const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau_out)
+NARROW int planar_4rpr_force_distribution(const prepared *m, const real *X, const real *V, const
+    real *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference,
+    real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     static const real no_reference[NU] = {0};
@@ -3115,7 +3071,7 @@ int planar_4rpr_force_distribution(const prepared *m, const real *X, const real 
     return finished(NU, tau, tau_out, &why);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[4] = {0}, residual[NU] CLEARED;
@@ -3130,7 +3086,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -3187,8 +3143,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int planar_4rpr_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int planar_4rpr_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -3198,7 +3154,7 @@ int planar_4rpr_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_4rpr_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int planar_4rpr_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -3214,7 +3170,8 @@ int planar_4rpr_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int planar_4rpr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int planar_4rpr_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -3225,7 +3182,7 @@ int planar_4rpr_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int planar_4rpr_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int planar_4rpr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -3241,7 +3198,7 @@ int planar_4rpr_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int planar_4rpr_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int planar_4rpr_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -3255,7 +3212,7 @@ int planar_4rpr_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int planar_4rpr_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int planar_4rpr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -3266,7 +3223,8 @@ int planar_4rpr_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int planar_4rpr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_4rpr_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3277,8 +3235,8 @@ int planar_4rpr_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int planar_4rpr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_4rpr_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3289,8 +3247,8 @@ int planar_4rpr_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int planar_4rpr_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int planar_4rpr_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -3302,7 +3260,7 @@ int planar_4rpr_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int planar_4rpr_rotation(const real *X, real *R_out)
+NARROW int planar_4rpr_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     status_flags why;
@@ -3313,19 +3271,18 @@ int planar_4rpr_rotation(const real *X, real *R_out)
     return finished(4, R, R_out, &why);
 }
 
-int planar_4rpr_pose(const real *t, const real *R, real *X_out)
+NARROW int planar_4rpr_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
+    real angle_of_rotation_1[1] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 2, 1, t, angle_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_4rpr_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int planar_4rpr_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     status_flags why;
     start(1, &why);
@@ -3334,7 +3291,7 @@ int planar_4rpr_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int planar_4rpr_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int planar_4rpr_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -3346,7 +3303,7 @@ int planar_4rpr_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int planar_4rpr_difference(const real *X0, const real *X1, real *step_out)
+NARROW int planar_4rpr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] CLEARED, step[NV] CLEARED;
@@ -3363,7 +3320,7 @@ int planar_4rpr_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int planar_4rpr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int planar_4rpr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && PLANAR_MIXED_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && PLANAR_MIXED_LANES >= 4 && VECTORS_OF(PLANAR_MIXED_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -278,11 +295,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -291,10 +310,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -396,11 +416,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -697,8 +714,9 @@ static int acceptable(const planar_mixed_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *model)
 {
@@ -719,8 +737,8 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     real b_c_prr_in_platform_x = 0;
     real b_c_prr_in_platform_y = 0;
     real legs_size_prr = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -733,41 +751,39 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         const size_t own = leg;
-        const real rpr_base_point_x = params->rpr_base_point[own][0];
-        const real rpr_base_point_y = params->rpr_base_point[own][1];
-        const real rpr_base_frame_xx = params->rpr_base_frame[own][0][0];
-        const real rpr_base_frame_xy = params->rpr_base_frame[own][0][1];
-        const real rpr_base_frame_yx = params->rpr_base_frame[own][1][0];
-        const real rpr_base_frame_yy = params->rpr_base_frame[own][1][1];
-        const real rpr_platform_point_x = params->rpr_platform_point[own][0];
-        const real rpr_platform_point_y = params->rpr_platform_point[own][1];
-        const real rpr_link1_mass = params->rpr_link1_mass[own];
+        KEEP_OF_LEG(rpr_base_point_x, params->rpr_base_point[own][0]);
+        KEEP_OF_LEG(rpr_base_point_y, params->rpr_base_point[own][1]);
+        KEEP_OF_LEG(rpr_base_frame_xx, params->rpr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rpr_base_frame_xy, params->rpr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rpr_base_frame_yx, params->rpr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rpr_base_frame_yy, params->rpr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rpr_platform_point_x, params->rpr_platform_point[own][0]);
+        KEEP_OF_LEG(rpr_platform_point_y, params->rpr_platform_point[own][1]);
+        KEEP_OF_LEG(rpr_link1_mass, params->rpr_link1_mass[own]);
         const real rpr_link1_centre_of_mass_x = params->rpr_link1_centre_of_mass[own][0];
         const real rpr_link1_centre_of_mass_y = params->rpr_link1_centre_of_mass[own][1];
         const real rpr_link1_inertia_zz = params->rpr_link1_inertia[own][2][2];
-        const real rpr_link2_mass = params->rpr_link2_mass[own];
+        KEEP_OF_LEG(rpr_link2_mass, params->rpr_link2_mass[own]);
         const real rpr_link2_centre_of_mass_x = params->rpr_link2_centre_of_mass[own][0];
         const real rpr_link2_centre_of_mass_y = params->rpr_link2_centre_of_mass[own][1];
         const real rpr_link2_inertia_zz = params->rpr_link2_inertia[own][2][2];
         static const signed char signs_rpr_branch_1[] = {1};
-        const real rpr_branch_1 = signs_rpr_branch_1[own];
+        KEEP_OF_LEG(rpr_branch_1, signs_rpr_branch_1[own]);
         /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
-        const real rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
+        KEEP_OF_LEG(rpr_h_1_in_spec1_x, rpr_link1_centre_of_mass_x*rpr_link1_mass);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_y, rpr_link1_centre_of_mass_y*rpr_link1_mass);
         /* (rpr-h_2) first moment of link 2 about the connection point */
-        const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
-        const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
+        KEEP_OF_LEG(rpr_h_2_in_spec1_x, rpr_link2_centre_of_mass_x*rpr_link2_mass);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_y, rpr_link2_centre_of_mass_y*rpr_link2_mass);
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
         const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
             rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
         const real rpr_J_group_1_t_2 = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
             rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
-        const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
-            rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass;
+        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz, rpr_link1_inertia_zz + rpr_link2_inertia_zz +
+            rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass);
         /* (h_star) */
         const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
         const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
@@ -777,32 +793,12 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
         const real rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass;
         /* (potential) potential energy */
-        const real rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
-        const real rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x +
-            rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x +
-            rpr_base_frame_yy*rpr_base_point_y;
-        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
-        KEEP_OF_LEG(rpr_base_frame_xx);
-        KEEP_OF_LEG(rpr_base_frame_xy);
-        KEEP_OF_LEG(rpr_base_frame_yx);
-        KEEP_OF_LEG(rpr_base_frame_yy);
-        KEEP_OF_LEG(rpr_base_point_x);
-        KEEP_OF_LEG(rpr_base_point_y);
-        KEEP_OF_LEG(rpr_branch_1);
-        KEEP_OF_LEG(rpr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rpr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rpr_h_2_in_spec1_x);
-        KEEP_OF_LEG(rpr_h_2_in_spec1_y);
-        KEEP_OF_LEG(rpr_link1_mass);
-        KEEP_OF_LEG(rpr_link2_mass);
-        KEEP_OF_LEG(rpr_platform_point_x);
-        KEEP_OF_LEG(rpr_platform_point_y);
-        KEEP_OF_LEG(rpr_potential_t);
-        KEEP_OF_LEG(rpr_potential_t_2);
-        KEEP_OF_LEG(rpr_potential_t_3);
-        KEEP_OF_LEG(rpr_potential_t_4);
+        KEEP_OF_LEG(rpr_potential_t, gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx);
+        KEEP_OF_LEG(rpr_potential_t_2, gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy);
+        KEEP_OF_LEG(rpr_potential_t_3, rpr_base_frame_xx*rpr_base_point_x +
+            rpr_base_frame_yx*rpr_base_point_y);
+        KEEP_OF_LEG(rpr_potential_t_4, rpr_base_frame_xy*rpr_base_point_x +
+            rpr_base_frame_yy*rpr_base_point_y);
         m_star_of_legs += rpr_link2_mass;
         h_star_in_platform_x_of_legs += rpr_h_star_t;
         h_star_in_platform_y_of_legs += rpr_h_star_t_2;
@@ -813,81 +809,81 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
-        const real rrr_base_point_x = params->rrr_base_point[own][0];
-        const real rrr_base_point_y = params->rrr_base_point[own][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        KEEP_OF_LEG(rrr_base_point_x, params->rrr_base_point[own][0]);
+        KEEP_OF_LEG(rrr_base_point_y, params->rrr_base_point[own][1]);
+        KEEP_OF_LEG(rrr_base_frame_xx, params->rrr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrr_base_frame_xy, params->rrr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrr_base_frame_yx, params->rrr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrr_base_frame_yy, params->rrr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrr_platform_point_x, params->rrr_platform_point[own][0]);
+        KEEP_OF_LEG(rrr_platform_point_y, params->rrr_platform_point[own][1]);
+        KEEP_OF_LEG(rrr_joint2_offset_x, params->rrr_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x, params->rrr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrr_link1_mass, params->rrr_link1_mass[own]);
         const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
         const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
         const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        KEEP_OF_LEG(rrr_link2_mass, params->rrr_link2_mass[own]);
         const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
         const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1};
-        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        KEEP_OF_LEG(rrr_branch_1, signs_rrr_branch_1[own]);
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         const real rrr_size_t_3 = R(4.58151643161e-07) + rrr_size_t + rrr_size_t_2;
-        const real rrr_size = root(rrr_size_t_3);
+        KEEP_OF_LEG(rrr_size, root(rrr_size_t_3));
         /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x, rrr_link1_centre_of_mass_x*rrr_link1_mass);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y, rrr_link1_centre_of_mass_y*rrr_link1_mass);
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz, rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass);
         /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
             rrr_platform_joint_offset_x;
         /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x, rrr_link2_mass*rrr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y, rrr_link2_centre_of_mass_y*rrr_link2_mass);
         /* (rrr-J_2) inertia tensor of link 2 about the connection point */
         const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
             rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz, rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass);
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        KEEP_OF_LEG(rrr_Kd_1_t, R(0.5)*rrr_size_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2, R(0.5)*rrr_size_t_2);
         /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        KEEP_OF_LEG(rrr_rho2_1_t, rrr_size*rrr_size*rrr_size_t_3);
         /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = 1/rrr_size_t;
+        KEEP_OF_LEG(inv_rrr_size_t, 1/rrr_size_t);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        KEEP_OF_LEG(inv_rrr_size_t_2, 1/rrr_size_t_2);
         /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y, 1/rrr_platform_joint_offset_x);
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy, -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y);
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz, rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz);
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
-        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        KEEP_OF_LEG(rrr_d_Gamma_2_t, rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x);
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        KEEP_OF_LEG(rrr_mu_1_t, gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_mu_1_t_2, gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
-        const real inv_rrr_size = 1/rrr_size;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t, 1/rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size, 1/rrr_size);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
-            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy, -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y);
         /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -897,47 +893,10 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
         /* (potential) */
-        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
-            rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
-            rrr_base_frame_yy*rrr_base_point_y;
-        KEEP_OF_LEG(inv_rrr_rho2_1_t);
-        KEEP_OF_LEG(inv_rrr_size);
-        KEEP_OF_LEG(inv_rrr_size_t);
-        KEEP_OF_LEG(inv_rrr_size_t_2);
-        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
-        KEEP_OF_LEG(rrr_Kd_1_t);
-        KEEP_OF_LEG(rrr_Kd_1_t_2);
-        KEEP_OF_LEG(rrr_base_frame_xx);
-        KEEP_OF_LEG(rrr_base_frame_xy);
-        KEEP_OF_LEG(rrr_base_frame_yx);
-        KEEP_OF_LEG(rrr_base_frame_yy);
-        KEEP_OF_LEG(rrr_base_point_x);
-        KEEP_OF_LEG(rrr_base_point_y);
-        KEEP_OF_LEG(rrr_branch_1);
-        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
-        KEEP_OF_LEG(rrr_d_Gamma_2_t);
-        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrr_joint2_offset_x);
-        KEEP_OF_LEG(rrr_link1_mass);
-        KEEP_OF_LEG(rrr_link2_mass);
-        KEEP_OF_LEG(rrr_mu_1_t);
-        KEEP_OF_LEG(rrr_mu_1_t_2);
-        KEEP_OF_LEG(rrr_platform_joint_offset_x);
-        KEEP_OF_LEG(rrr_platform_point_x);
-        KEEP_OF_LEG(rrr_platform_point_y);
-        KEEP_OF_LEG(rrr_potential_t);
-        KEEP_OF_LEG(rrr_potential_t_2);
-        KEEP_OF_LEG(rrr_rho2_1_t);
-        KEEP_OF_LEG(rrr_size);
-        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_potential_t, rrr_base_frame_xx*rrr_base_point_x +
+            rrr_base_frame_yx*rrr_base_point_y);
+        KEEP_OF_LEG(rrr_potential_t_2, rrr_base_frame_xy*rrr_base_point_x +
+            rrr_base_frame_yy*rrr_base_point_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -949,50 +908,50 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         const size_t own = leg;
-        const real prr_base_point_x = params->prr_base_point[own][0];
-        const real prr_base_point_y = params->prr_base_point[own][1];
-        const real prr_base_frame_xx = params->prr_base_frame[own][0][0];
-        const real prr_base_frame_xy = params->prr_base_frame[own][0][1];
-        const real prr_base_frame_yx = params->prr_base_frame[own][1][0];
-        const real prr_base_frame_yy = params->prr_base_frame[own][1][1];
-        const real prr_platform_point_x = params->prr_platform_point[own][0];
-        const real prr_platform_point_y = params->prr_platform_point[own][1];
-        const real prr_platform_joint_offset_x = params->prr_platform_joint_offset[own][0];
-        const real prr_link1_mass = params->prr_link1_mass[own];
+        KEEP_OF_LEG(prr_base_point_x, params->prr_base_point[own][0]);
+        KEEP_OF_LEG(prr_base_point_y, params->prr_base_point[own][1]);
+        KEEP_OF_LEG(prr_base_frame_xx, params->prr_base_frame[own][0][0]);
+        KEEP_OF_LEG(prr_base_frame_xy, params->prr_base_frame[own][0][1]);
+        KEEP_OF_LEG(prr_base_frame_yx, params->prr_base_frame[own][1][0]);
+        KEEP_OF_LEG(prr_base_frame_yy, params->prr_base_frame[own][1][1]);
+        KEEP_OF_LEG(prr_platform_point_x, params->prr_platform_point[own][0]);
+        KEEP_OF_LEG(prr_platform_point_y, params->prr_platform_point[own][1]);
+        KEEP_OF_LEG(prr_platform_joint_offset_x, params->prr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(prr_link1_mass, params->prr_link1_mass[own]);
         const real prr_link1_centre_of_mass_x = params->prr_link1_centre_of_mass[own][0];
         const real prr_link1_centre_of_mass_y = params->prr_link1_centre_of_mass[own][1];
-        const real prr_link2_mass = params->prr_link2_mass[own];
+        KEEP_OF_LEG(prr_link2_mass, params->prr_link2_mass[own]);
         const real prr_link2_centre_of_mass_x = params->prr_link2_centre_of_mass[own][0];
         const real prr_link2_centre_of_mass_y = params->prr_link2_centre_of_mass[own][1];
         const real prr_link2_inertia_zz = params->prr_link2_inertia[own][2][2];
         static const signed char signs_prr_branch_1[] = {-1};
-        const real prr_branch_1 = signs_prr_branch_1[own];
+        KEEP_OF_LEG(prr_branch_1, signs_prr_branch_1[own]);
         /* (prr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prr_size_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        KEEP_OF_LEG(prr_size_t, prr_platform_joint_offset_x*prr_platform_joint_offset_x);
         const real prr_size_t_2 = R(4.58151643161e-07) + prr_size_t;
-        const real prr_size = root(prr_size_t_2);
+        KEEP_OF_LEG(prr_size, root(prr_size_t_2));
         /* (prr-h_1) first moment of link 1 about the origin of link 1 */
-        const real prr_h_1_in_spec0_x = prr_link1_centre_of_mass_x*prr_link1_mass;
-        const real prr_h_1_in_spec0_y = prr_link1_centre_of_mass_y*prr_link1_mass;
+        KEEP_OF_LEG(prr_h_1_in_spec0_x, prr_link1_centre_of_mass_x*prr_link1_mass);
+        KEEP_OF_LEG(prr_h_1_in_spec0_y, prr_link1_centre_of_mass_y*prr_link1_mass);
         /* (prr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real prr_rho_tip_2_in_spec2_x = prr_link2_centre_of_mass_x -
             prr_platform_joint_offset_x;
         /* (prr-h_2) first moment of link 2 about the connection point */
-        const real prr_h_2_in_spec2_x = prr_link2_mass*prr_rho_tip_2_in_spec2_x;
-        const real prr_h_2_in_spec2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
+        KEEP_OF_LEG(prr_h_2_in_spec2_x, prr_link2_mass*prr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(prr_h_2_in_spec2_y, prr_link2_centre_of_mass_y*prr_link2_mass);
         /* (prr-J_2) inertia tensor of link 2 about the connection point */
         const real prr_J_2_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
             prr_rho_tip_2_in_spec2_x*prr_rho_tip_2_in_spec2_x;
-        const real prr_J_2_in_spec2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass;
+        KEEP_OF_LEG(prr_J_2_in_spec2_zz, prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass);
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = 1/prr_size_t;
+        KEEP_OF_LEG(inv_prr_size_t, 1/prr_size_t);
         /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
+        KEEP_OF_LEG(prr_g_in_axes0_x, gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx);
         /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
+        KEEP_OF_LEG(prr_g_in_axes0_y, gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy);
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_prr_size = 1/prr_size;
+        KEEP_OF_LEG(inv_prr_size, 1/prr_size);
         /* (h_star) */
         const real prr_h_star_t = prr_link2_mass*prr_platform_point_x;
         const real prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y;
@@ -1002,35 +961,10 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real prr_J_star_t_3 = prr_J_star_t*prr_link2_mass;
         const real prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass;
         /* (potential) */
-        const real prr_b_in_axes0_x = prr_base_frame_xx*prr_base_point_x +
-            prr_base_frame_yx*prr_base_point_y;
-        const real prr_potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
-            prr_base_frame_yy*prr_base_point_y);
-        KEEP_OF_LEG(inv_prr_size);
-        KEEP_OF_LEG(inv_prr_size_t);
-        KEEP_OF_LEG(prr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(prr_b_in_axes0_x);
-        KEEP_OF_LEG(prr_base_frame_xx);
-        KEEP_OF_LEG(prr_base_frame_xy);
-        KEEP_OF_LEG(prr_base_frame_yx);
-        KEEP_OF_LEG(prr_base_frame_yy);
-        KEEP_OF_LEG(prr_base_point_x);
-        KEEP_OF_LEG(prr_base_point_y);
-        KEEP_OF_LEG(prr_branch_1);
-        KEEP_OF_LEG(prr_g_in_axes0_x);
-        KEEP_OF_LEG(prr_g_in_axes0_y);
-        KEEP_OF_LEG(prr_h_1_in_spec0_x);
-        KEEP_OF_LEG(prr_h_1_in_spec0_y);
-        KEEP_OF_LEG(prr_h_2_in_spec2_x);
-        KEEP_OF_LEG(prr_h_2_in_spec2_y);
-        KEEP_OF_LEG(prr_link1_mass);
-        KEEP_OF_LEG(prr_link2_mass);
-        KEEP_OF_LEG(prr_platform_joint_offset_x);
-        KEEP_OF_LEG(prr_platform_point_x);
-        KEEP_OF_LEG(prr_platform_point_y);
-        KEEP_OF_LEG(prr_potential_t);
-        KEEP_OF_LEG(prr_size);
-        KEEP_OF_LEG(prr_size_t);
+        KEEP_OF_LEG(prr_b_in_axes0_x, prr_base_frame_xx*prr_base_point_x +
+            prr_base_frame_yx*prr_base_point_y);
+        KEEP_OF_LEG(prr_potential_t, prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
+            prr_base_frame_yy*prr_base_point_y));
         m_star_of_legs += prr_link2_mass;
         h_star_in_platform_x_of_legs += prr_h_star_t;
         h_star_in_platform_y_of_legs += prr_h_star_t_2;
@@ -1041,37 +975,28 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         legs_size_prr += prr_size_t_2;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
     /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
-    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
+    KEEP(J_star_zz, J_star_in_platform_xx - J_star_t_5);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prr_in_platform_x +
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_prr_in_platform_x +
         R(0.3333333333333333)*b_c_rpr_in_platform_x +
-        R(0.3333333333333333)*b_c_rrr_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prr_in_platform_y +
+        R(0.3333333333333333)*b_c_rrr_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_prr_in_platform_y +
         R(0.3333333333333333)*b_c_rpr_in_platform_y +
-        R(0.3333333333333333)*b_c_rrr_in_platform_y;
+        R(0.3333333333333333)*b_c_rrr_in_platform_y);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.12813333333333332) + R(0.3333333333333333)*legs_size_prr +
-        R(0.3333333333333333)*legs_size_rrr);
-    KEEP(J_star_zz);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(R(0.12813333333333332) + R(0.3333333333333333)*legs_size_prr +
+        R(0.3333333333333333)*legs_size_rrr));
     return OK;
 }
 
@@ -1544,7 +1469,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_2 = X[2*w + k];
     v->R_xx = cosine(X_2);
     v->R_yx = sine(X_2);
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
     v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
 }
@@ -1585,7 +1510,7 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->prr_disc_1 = m->prr_size_t[i] + v->prr_S_in_axes0_x*v->prr_S_in_axes0_x - prr_disc_1_t;
     /* (prr-q_1) displacement of joint 1 */
     v->prr_q_1_t = -m->prr_branch_1[i]*root(v->prr_disc_1);
-    /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (prr-c_2) */
     v->prr_c_2 = m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v->prr_q_1_t;
     /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
     v->prr_s_2 =
@@ -1607,7 +1532,7 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_y;
     v->prr_w_1_y = v->axis_x_prr_axes2_x*v->prr_w_1_in_axes2_y -
         v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_x;
-    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (prr-acc_2) */
     v->prr_g_in_axes2_x = m->prr_g_in_axes0_y[i]*v->prr_s_2 +
         v->prr_c_2*m->prr_g_in_axes0_x[i];
     v->prr_g_in_axes2_y = v->prr_c_2*m->prr_g_in_axes0_y[i] -
@@ -1672,7 +1597,7 @@ INLINE void stage_prr_A_V_X(values_prr *v)
 
 INLINE void stage_prr_Z_dynamics(const prepared *m, size_t i, values_prr *v)
 {
-    /* (prr-u_1) centripetal acceleration of the connection point */
+    /* (prr-u_1) */
     const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_u_1_x -
         v->axis_y_prr_axes2_x*v->prr_u_1_y;
     const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*v->prr_u_1_y +
@@ -1761,19 +1686,18 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
 
 INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 {
-    /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
+    /* (prr-acc_1) */
     const real prr_acc_1_in_axes0_x = v->prr_qdd_1 - m->prr_g_in_axes0_x[i];
     /* (prr-f_1) inertia force of link 1 less its weight */
     const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (prr-acc_2) */
     v->prr_acc_2_in_axes2_x = v->prr_S_ddot_in_axes2_x - v->prr_g_in_axes2_x;
     v->prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y - v->prr_g_in_axes2_y;
     /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real prr_mu_2_in_axes2_z = v->prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
         v->prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
         m->prr_J_2_in_spec2_zz[i]*v->prr_qdd_1_t;
-    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prr-c) */
     const real prr_c_t_3 = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
         prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
     v->prr_c_in_axes2_x = v->prr_c_t - m->prr_h_2_in_spec2_y[i]*v->prr_qdd_1_t -
@@ -1840,7 +1764,7 @@ INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
 INLINE void stage_rpr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rpr *v)
 {
-    /* (rpr-S_dot) velocity of the connection point */
+    /* (rpr-S_dot) */
     const real omega_z = V[2*w + j];
     const real rpr_S_dot_t = omega_z*v->rpr_q_y;
     const real rpr_S_dot_t_2 = omega_z*v->rpr_q_x;
@@ -1884,7 +1808,7 @@ INLINE void stage_rpr_A_V_X(values_rpr *v)
 
 INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-u_1) centripetal acceleration of the connection point */
+    /* (rpr-u_1) */
     const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
         v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
     /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -1913,7 +1837,7 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
     v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
 }
 
@@ -1934,26 +1858,25 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
     v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
     v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->rpr_M_ta_t = v->rpr_Q_xy*v->rpr_q_x - v->rpr_Q_xx*v->rpr_q_y;
     v->rpr_M_ta_t_2 = v->rpr_Q_yy*v->rpr_q_x - v->rpr_Q_xy*v->rpr_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->rpr_M_aa_t = v->rpr_M_ta_t_2*v->rpr_q_x - v->rpr_M_ta_t*v->rpr_q_y;
 }
 
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rpr-acc_2) */
     v->rpr_acc_2_in_axes1_x = v->rpr_S_ddot_in_axes1_x - v->rpr_g_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_g_in_axes1_y;
-    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    /* (rpr-phi_2) */
     v->rpr_phi_2_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
-    /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rpr-mu_1) */
     const real rpr_mu_1_in_axes1_z = v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
         v->rpr_mu_1_t - v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
-    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rpr-c) */
     v->rpr_c_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*v->rpr_qdd_1 -
         v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
@@ -1981,8 +1904,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
     const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
+    /* (rrr-Kd_1) */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
     const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
@@ -1991,7 +1913,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
+    /* (rrr-rho2_1) */
     v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
@@ -2002,10 +1924,10 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    /* (rrr-x_2) */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (rrr-c_2) */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrr_s_2_t =
@@ -2030,7 +1952,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rrr_axes2_x*m->gravity_y;
     v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
         v->axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
     v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
@@ -2052,7 +1974,7 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-S_dot) velocity of the connection point */
+    /* (rrr-S_dot) */
     const real omega_z = V[2*w + j];
     const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
     const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
@@ -2105,7 +2027,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-u_1) centripetal acceleration of the connection point */
+    /* (rrr-u_1) */
     const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
         v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
     const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
@@ -2150,17 +2072,16 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
         v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-w_2) reciprocal vector 2 */
+    /* (rrr-w_2) */
     const real rrr_w_2_in_axes2_x =
         v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (rrr-d_Gamma_2) */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
     const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
@@ -2168,8 +2089,7 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        inertia and weight */
     const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrr-d_c) */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
@@ -2184,10 +2104,10 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
     v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
 }
 
@@ -2195,24 +2115,22 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
     const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
-    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rrr-acc_2) */
     v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
         v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
         m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
@@ -2258,10 +2176,10 @@ INLINE void any_sums_rpr(size_t k, size_t count, int add, const values_rpr *v, r
     gather(&terms[0*count + k], add, v->rpr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rpr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rpr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rpr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
@@ -2270,7 +2188,7 @@ INLINE void any_sums_rpr_2(size_t k, size_t count, int add, const values_rpr *v,
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v->rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rpr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rpr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
@@ -2279,70 +2197,126 @@ INLINE void any_entries_rpr(size_t k, size_t count, const values_rpr *v, real *o
     /* (rpr-w_2) reciprocal vector 2 */
     o[0*count + k] = v->axis_x_rpr_axes1_x;
     o[1*count + k] = v->axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    /* (rpr-H_a_2) */
     o[2*count + k] = v->rpr_H_a_2_z;
 }
 
 INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
 {
-    /* (M_tt) translational block of M */
+    /* (M_tt) */
     gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
 INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrr-H_a_1) */
     o[2*count + k] = v->rrr_H_a_1_z;
 }
 
 INLINE void any_sums_prr(size_t k, size_t count, int add, const values_prr *v, real *terms)
 {
-    /* (M_tt) translational block of M */
+    /* (M_tt) */
     gather(&terms[0*count + k], add, v->prr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->prr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->prr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->prr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
 INLINE void any_sums_prr_2(size_t k, size_t count, int add, const values_prr *v, real *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->prr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->prr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_prr(size_t k, size_t count, const values_prr *v, real *o)
 {
-    /* (prr-w_1) reciprocal vector 1 */
+    /* (prr-w_1) */
     o[0*count + k] = v->prr_w_1_x;
     o[1*count + k] = v->prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    /* (prr-H_a_1) */
     o[2*count + k] = v->prr_H_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2391,7 +2365,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
@@ -2453,59 +2427,15 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[4*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[3*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[5*w + k];
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[6*w + k];
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[7*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-        + (Z_t_y + Z_a_z)));
+    any_after(m, w, k, s + 3*w, sums, M, t);
+    any_after_2(w, k, s + 5*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)8)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rpr[SUMS_OF_dynamics*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2648,41 +2578,13 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[4*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[3*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+    any_after(m, w, k, s + 3*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)5)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rpr[SUMS_OF_M*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
@@ -2727,7 +2629,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2780,10 +2682,10 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    /* (Z_q) */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[3*w + k] = Z_p_x;
     s[4*w + k] = Z_p_y;
@@ -2829,23 +2731,7 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[3*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[4*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[5*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
+    any_after_2(w, k, s + 3*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)6)
@@ -2897,7 +2783,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2984,7 +2870,7 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)3)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -3069,7 +2955,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_x = t_ddot_x - m->gravity_x;
     const real t_ddot_y = A[1*w + k];
     const real a_t_y = t_ddot_y - m->gravity_y;
-    /* (f_p) inertia force of the platform less its weight */
+    /* (f_p) */
     const real alpha_z = A[2*w + k];
     const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y - v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
@@ -3090,15 +2976,14 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
-    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rpr-c) */
     const real rpr_c_x = -v.axis_x_rpr_axes1_x*v.rpr_phi_2_in_axes1_x -
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
         v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
@@ -3127,8 +3012,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
         v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
@@ -3166,8 +3050,7 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prr_V_X(m, w, i, j, s, V, &v);
     stage_prr_A_V_X(&v);
     stage_prr_legs_required(m, i, &v);
-    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prr-c) */
     const real prr_c_x = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_x +
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_y;
     const real prr_c_y = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_y -
@@ -3196,14 +3079,14 @@ INLINE void required_place_prr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -3273,8 +3156,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rpr[4*LANES];
@@ -3329,7 +3212,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    /* (rpr-c_1) */
     const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
     /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
     const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
@@ -3337,7 +3220,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
     const real rpr_q_1 = angle(rpr_s_1, rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
-    /* (rpr-q_2) displacement of joint 2 */
+    /* (rpr-q_2) */
     o[1*count + k] = v.rpr_q_2;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
@@ -3386,7 +3269,7 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, s
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-q_1) displacement of joint 1 */
+    /* (prr-q_1) */
     const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
     /* (prr-q_2) displacement of joint 2 */
     const real prr_q_2 = angle(v.prr_s_2, v.prr_c_2);
@@ -3409,7 +3292,8 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t k, size_t at, size_t c
 
 #define PASSED_IN_inverse_kinematics ((size_t)3)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -3491,7 +3375,7 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
-    /* (rpr-qd_1) rate of joint 1 */
+    /* (rpr-qd_1) */
     o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rpr_S_dot_in_axes1_x;
@@ -3515,9 +3399,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-qd_1) */
     o[0*count + k] = -v.rrr_qd_1_t;
-    /* (rrr-qd_2) rate of joint 2 */
+    /* (rrr-qd_2) */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3541,7 +3425,7 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_V_X(m, w, i, j, s, V, &v);
-    /* (prr-qd_1) rate of joint 1 */
+    /* (prr-qd_1) */
     const real prr_qd_1 = v.prr_S_dot_x*m->prr_base_frame_xx[i] +
         v.prr_S_dot_y*m->prr_base_frame_yx[i] + v.prr_qd_1_t*v.prr_v_2_in_axes0_x;
     /* (prr-qd_1) */
@@ -3565,8 +3449,8 @@ INLINE void joint_rates_place_prr(size_t w, size_t k, size_t at, size_t count, c
 
 #define PASSED_IN_joint_rates ((size_t)3)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -3650,9 +3534,9 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     stage_rpr_A_X(w, j, A, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_A_V_X(&v);
-    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    /* (rpr-rel) */
     const real rpr_rel_in_axes1_x = v.rpr_S_ddot_in_axes1_x - v.rpr_W_1_in_axes1_xx*v.rpr_q_2;
-    /* (rpr-qdd_1) acceleration of joint 1 */
+    /* (rpr-qdd_1) */
     o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
@@ -3678,9 +3562,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
-    /* (rrr-qdd_1) acceleration of joint 1 */
+    /* (rrr-qdd_1) */
     o[0*count + k] = -v.rrr_qdd_1_t;
-    /* (rrr-qdd_2) acceleration of joint 2 */
+    /* (rrr-qdd_2) */
     o[1*count + k] = v.rrr_qdd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3706,7 +3590,7 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     stage_prr_A_X(w, j, A, &v);
     stage_prr_V_X(m, w, i, j, s, V, &v);
     stage_prr_A_V_X(&v);
-    /* (prr-qdd_1) acceleration of joint 1 */
+    /* (prr-qdd_1) */
     o[0*count + k] = v.prr_qdd_1;
     /* (prr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.prr_qdd_1_t;
@@ -3727,8 +3611,8 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t k, size_t at, size_t 
 
 #define PASSED_IN_joint_accelerations ((size_t)3)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -3825,7 +3709,7 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rpr-c_true) */
     o[0*count + k] = rpr_c_true_x;
     o[1*count + k] = rpr_c_true_y;
-    /* (rpr-w_2) reciprocal vector 2 */
+    /* (rpr-w_2) */
     o[2*count + k] = v.axis_x_rpr_axes1_x;
     o[3*count + k] = v.axis_x_rpr_axes1_y;
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
@@ -3863,7 +3747,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-c_true) */
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
@@ -3903,7 +3787,7 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (prr-c_true) */
     o[0*count + k] = prr_c_true_x;
     o[1*count + k] = prr_c_true_y;
-    /* (prr-w_1) reciprocal vector 1 */
+    /* (prr-w_1) */
     o[2*count + k] = v.prr_w_1_x;
     o[3*count + k] = v.prr_w_1_y;
     o[4*count + k] = UNLESS(v.prr_disc_1 >= 0);
@@ -3967,7 +3851,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
@@ -3980,9 +3864,9 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    /* (rpr-c_1) */
     const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    /* (rpr-s_1) */
     const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (potential) */
     const real rpr_potential_t_5 = (rpr_c_1*m->rpr_potential_t[i] +
@@ -4022,7 +3906,7 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-q_1) displacement of joint 1 */
+    /* (prr-q_1) */
     const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
     /* (potential) */
     const real prr_potential_t_2 = m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] +
@@ -4115,7 +3999,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -4131,7 +4015,7 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
     const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
         R(1.6129032258064517)*rpr_pivot_size_2);
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
     const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
     const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
@@ -4162,8 +4046,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
     const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
     const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
@@ -4203,8 +4086,7 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (prr-G) */
     const real prr_pivot_size = magnitude(v.prr_v_2_in_axes0_y);
     const real prr_pivot = m->inv_prr_size[i]*prr_pivot_size;
     /* (spread) */
@@ -4238,7 +4120,7 @@ INLINE void condition_place_prr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_prr = sums[2*w + k];
     const real spread_rpr = sums[0*w + k];
     const real spread_rrr = sums[1*w + k];
@@ -4252,8 +4134,8 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 #define PASSED_IN_condition ((size_t)3)
 #define SUMS_OF_condition ((size_t)3)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rpr[SUMS_OF_condition*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
@@ -4301,7 +4183,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int planar_mixed_M(const prepared *m, const real *X, real *M_out)
+NARROW int planar_mixed_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -4324,7 +4206,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int planar_mixed_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int planar_mixed_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -4348,7 +4230,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int planar_mixed_H(const prepared *m, const real *X, real *H_out)
+NARROW int planar_mixed_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -4371,7 +4253,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int planar_mixed_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int planar_mixed_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -4394,7 +4276,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int planar_mixed_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_mixed_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -4419,8 +4301,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int planar_mixed_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int planar_mixed_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -4446,8 +4328,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int planar_mixed_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int planar_mixed_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -4529,8 +4411,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {1, 0, 2};
 static const real sizes_tau[] = {1.0, 4.0, 0.25};
 
-int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -4579,8 +4461,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {16.0, 4.0, 0.25};
 
-int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out)
+NARROW int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -4636,8 +4518,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int planar_mixed_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int planar_mixed_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -4650,8 +4532,8 @@ int planar_mixed_complete_acceleration(const prepared *m, const real *X, const r
     return finished(NV, completed, completed_out, &why);
 }
 
-int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
@@ -4669,8 +4551,8 @@ int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, 
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -4688,7 +4570,8 @@ int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *k
     return final_status(&why, 1, potential_out);
 }
 
-int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4721,7 +4604,7 @@ int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, re
     return final_status(&why, NL, legs_out);
 }
 
-int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
@@ -4755,8 +4638,8 @@ int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_
     return final_status(&why, 1, isotropy_out);
 }
 
-int planar_mixed_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int planar_mixed_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -4789,7 +4672,7 @@ int planar_mixed_singularity_distance(const prepared *m, const real *X, real *ac
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     static const size_t places_residual[] = {1};
@@ -4810,7 +4693,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4867,8 +4750,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
-    real *X_out)
+NARROW int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4878,7 +4761,7 @@ int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, c
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4894,7 +4777,8 @@ int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, re
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4905,7 +4789,7 @@ int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real 
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4921,7 +4805,7 @@ int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_o
     return final_status(&why, NJ, margins_out);
 }
 
-int planar_mixed_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int planar_mixed_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4935,7 +4819,7 @@ int planar_mixed_within_limits(const prepared *m, const real *X, real *within_ou
     return finished(1, within, within_out, &why);
 }
 
-int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -4946,7 +4830,8 @@ int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_ou
     return finished(NU, q, q_out, &why);
 }
 
-int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -4957,8 +4842,8 @@ int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V,
     return finished(NU, qd, qd_out, &why);
 }
 
-int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -4969,8 +4854,8 @@ int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const 
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int planar_mixed_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int planar_mixed_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4982,7 +4867,7 @@ int planar_mixed_power(const prepared *m, const real *X, const real *V, const re
     return finished(1, power, power_out, &why);
 }
 
-int planar_mixed_rotation(const real *X, real *R_out)
+NARROW int planar_mixed_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     status_flags why;
@@ -4993,19 +4878,18 @@ int planar_mixed_rotation(const real *X, real *R_out)
     return finished(4, R, R_out, &why);
 }
 
-int planar_mixed_pose(const real *t, const real *R, real *X_out)
+NARROW int planar_mixed_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
+    real angle_of_rotation_1[1] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 2, 1, t, angle_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     status_flags why;
     start(1, &why);
@@ -5014,7 +4898,7 @@ int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -5026,7 +4910,7 @@ int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
+NARROW int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] CLEARED, step[NV] CLEARED;
@@ -5043,7 +4927,7 @@ int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

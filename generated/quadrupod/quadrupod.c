@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && QUADRUPOD_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && QUADRUPOD_LANES >= 4 && VECTORS_OF(QUADRUPOD_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -279,11 +296,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -292,10 +311,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -397,11 +417,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -648,8 +665,9 @@ static int acceptable(const quadrupod_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
 {
@@ -673,9 +691,9 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
     real b_c_tube_in_platform_x = 0;
     real b_c_tube_in_platform_y = 0;
     real b_c_tube_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -701,27 +719,24 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         const size_t own = leg;
-        const real ups_base_point_x = params->ups_base_point[own][0];
-        const real ups_base_point_y = params->ups_base_point[own][1];
-        const real ups_base_point_z = params->ups_base_point[own][2];
-        const real ups_base_frame_xx = params->ups_base_frame[own][0][0];
-        const real ups_base_frame_xy = params->ups_base_frame[own][0][1];
-        const real ups_base_frame_xz = params->ups_base_frame[own][0][2];
-        const real ups_base_frame_yx = params->ups_base_frame[own][1][0];
-        const real ups_base_frame_yy = params->ups_base_frame[own][1][1];
-        const real ups_base_frame_yz = params->ups_base_frame[own][1][2];
-        const real ups_base_frame_zx = params->ups_base_frame[own][2][0];
-        const real ups_base_frame_zy = params->ups_base_frame[own][2][1];
-        const real ups_base_frame_zz = params->ups_base_frame[own][2][2];
-        const real ups_platform_point_x = params->ups_platform_point[own][0];
-        const real ups_platform_point_y = params->ups_platform_point[own][1];
-        const real ups_platform_point_z = params->ups_platform_point[own][2];
-        const real ups_link2_mass = params->ups_link2_mass[own];
+        KEEP_OF_LEG(ups_base_point_x, params->ups_base_point[own][0]);
+        KEEP_OF_LEG(ups_base_point_y, params->ups_base_point[own][1]);
+        KEEP_OF_LEG(ups_base_point_z, params->ups_base_point[own][2]);
+        KEEP_OF_LEG(ups_base_frame_xx, params->ups_base_frame[own][0][0]);
+        KEEP_OF_LEG(ups_base_frame_xy, params->ups_base_frame[own][0][1]);
+        KEEP_OF_LEG(ups_base_frame_xz, params->ups_base_frame[own][0][2]);
+        KEEP_OF_LEG(ups_base_frame_yx, params->ups_base_frame[own][1][0]);
+        KEEP_OF_LEG(ups_base_frame_yy, params->ups_base_frame[own][1][1]);
+        KEEP_OF_LEG(ups_base_frame_yz, params->ups_base_frame[own][1][2]);
+        KEEP_OF_LEG(ups_base_frame_zx, params->ups_base_frame[own][2][0]);
+        KEEP_OF_LEG(ups_base_frame_zy, params->ups_base_frame[own][2][1]);
+        KEEP_OF_LEG(ups_base_frame_zz, params->ups_base_frame[own][2][2]);
+        KEEP_OF_LEG(ups_platform_point_x, params->ups_platform_point[own][0]);
+        KEEP_OF_LEG(ups_platform_point_y, params->ups_platform_point[own][1]);
+        KEEP_OF_LEG(ups_platform_point_z, params->ups_platform_point[own][2]);
+        KEEP_OF_LEG(ups_link2_mass, params->ups_link2_mass[own]);
         const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[own][0];
         const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[own][1];
         const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[own][2];
@@ -731,7 +746,7 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_link2_inertia_yy = params->ups_link2_inertia[own][1][1];
         const real ups_link2_inertia_yz = params->ups_link2_inertia[own][1][2];
         const real ups_link2_inertia_zz = params->ups_link2_inertia[own][2][2];
-        const real ups_link3_mass = params->ups_link3_mass[own];
+        KEEP_OF_LEG(ups_link3_mass, params->ups_link3_mass[own]);
         const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[own][0];
         const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[own][1];
         const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[own][2];
@@ -742,17 +757,17 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_link3_inertia_yz = params->ups_link3_inertia[own][1][2];
         const real ups_link3_inertia_zz = params->ups_link3_inertia[own][2][2];
         static const signed char signs_ups_branch_1[] = {1, 1, 1, 1};
-        const real ups_branch_1 = signs_ups_branch_1[own];
+        KEEP_OF_LEG(ups_branch_1, signs_ups_branch_1[own]);
         static const signed char signs_ups_branch_2[] = {1, 1, 1, 1};
-        const real ups_branch_2 = signs_ups_branch_2[own];
+        KEEP_OF_LEG(ups_branch_2, signs_ups_branch_2[own]);
         /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
+        KEEP_OF_LEG(ups_h_2_in_spec2_x, ups_link2_centre_of_mass_x*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y, ups_link2_centre_of_mass_y*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z, ups_link2_centre_of_mass_z*ups_link2_mass);
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        KEEP_OF_LEG(ups_h_3_in_spec2_x, ups_link3_centre_of_mass_x*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y, ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z, ups_link3_centre_of_mass_z*ups_link3_mass);
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -762,37 +777,37 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
         const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
         const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
-        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx, ups_link2_inertia_xx + ups_link3_inertia_xx -
             ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_xy =
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy,
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+            ups_link2_inertia_xz - ups_link3_inertia_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz, ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
-            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy, ups_link2_inertia_zz + ups_link3_inertia_zz -
             ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_yz =
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz,
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_inertia_yz - ups_link3_inertia_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz, ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8));
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
             ups_J_group_2_in_axes2_zz;
         const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
-        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz);
         /* (ups-h_group_2) first moments of the links that turn with link 2 */
-        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
-        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
-        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x, ups_h_2_in_spec2_x + ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y, -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z, ups_h_2_in_spec2_y + ups_h_3_in_spec2_y);
         /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -809,61 +824,18 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
         const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
         /* (potential) potential energy */
-        const real ups_potential_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_potential_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_potential_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
-        const real ups_potential_t_4 = ups_base_frame_xx*ups_base_point_x +
-            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_potential_t_5 = ups_base_frame_xy*ups_base_point_x +
-            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_potential_t_6 = ups_base_frame_xz*ups_base_point_x +
-            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_base_frame_xx);
-        KEEP_OF_LEG(ups_base_frame_xy);
-        KEEP_OF_LEG(ups_base_frame_xz);
-        KEEP_OF_LEG(ups_base_frame_yx);
-        KEEP_OF_LEG(ups_base_frame_yy);
-        KEEP_OF_LEG(ups_base_frame_yz);
-        KEEP_OF_LEG(ups_base_frame_zx);
-        KEEP_OF_LEG(ups_base_frame_zy);
-        KEEP_OF_LEG(ups_base_frame_zz);
-        KEEP_OF_LEG(ups_base_point_x);
-        KEEP_OF_LEG(ups_base_point_y);
-        KEEP_OF_LEG(ups_base_point_z);
-        KEEP_OF_LEG(ups_branch_1);
-        KEEP_OF_LEG(ups_branch_2);
-        KEEP_OF_LEG(ups_h_2_in_spec2_x);
-        KEEP_OF_LEG(ups_h_2_in_spec2_y);
-        KEEP_OF_LEG(ups_h_2_in_spec2_z);
-        KEEP_OF_LEG(ups_h_3_in_spec2_x);
-        KEEP_OF_LEG(ups_h_3_in_spec2_y);
-        KEEP_OF_LEG(ups_h_3_in_spec2_z);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
-        KEEP_OF_LEG(ups_link2_mass);
-        KEEP_OF_LEG(ups_link3_mass);
-        KEEP_OF_LEG(ups_platform_point_x);
-        KEEP_OF_LEG(ups_platform_point_y);
-        KEEP_OF_LEG(ups_platform_point_z);
-        KEEP_OF_LEG(ups_potential_t);
-        KEEP_OF_LEG(ups_potential_t_2);
-        KEEP_OF_LEG(ups_potential_t_3);
-        KEEP_OF_LEG(ups_potential_t_4);
-        KEEP_OF_LEG(ups_potential_t_5);
-        KEEP_OF_LEG(ups_potential_t_6);
+        KEEP_OF_LEG(ups_potential_t, gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx);
+        KEEP_OF_LEG(ups_potential_t_2, gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy);
+        KEEP_OF_LEG(ups_potential_t_3, gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz);
+        KEEP_OF_LEG(ups_potential_t_4, ups_base_frame_xx*ups_base_point_x +
+            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_5, ups_base_frame_xy*ups_base_point_x +
+            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_6, ups_base_frame_xz*ups_base_point_x +
+            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z);
         m_star_of_legs += ups_link3_mass;
         h_star_in_platform_x_of_legs += ups_h_star_t;
         h_star_in_platform_y_of_legs += ups_h_star_t_2;
@@ -880,31 +852,40 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         const size_t own = leg;
-        const real tube_base_point_x = params->tube_base_point[own][0];
-        const real tube_base_point_y = params->tube_base_point[own][1];
-        const real tube_base_point_z = params->tube_base_point[own][2];
-        const real tube_base_frame_xx = params->tube_base_frame[own][0][0];
-        const real tube_base_frame_xy = params->tube_base_frame[own][0][1];
-        const real tube_base_frame_xz = params->tube_base_frame[own][0][2];
-        const real tube_base_frame_yx = params->tube_base_frame[own][1][0];
-        const real tube_base_frame_yy = params->tube_base_frame[own][1][1];
-        const real tube_base_frame_yz = params->tube_base_frame[own][1][2];
-        const real tube_base_frame_zx = params->tube_base_frame[own][2][0];
-        const real tube_base_frame_zy = params->tube_base_frame[own][2][1];
-        const real tube_base_frame_zz = params->tube_base_frame[own][2][2];
-        const real tube_platform_point_x = params->tube_platform_point[own][0];
-        const real tube_platform_point_y = params->tube_platform_point[own][1];
-        const real tube_platform_point_z = params->tube_platform_point[own][2];
-        const real tube_platform_joint_rotation_xx = params->tube_platform_joint_rotation[own][0][0];
-        const real tube_platform_joint_rotation_xy = params->tube_platform_joint_rotation[own][0][1];
-        const real tube_platform_joint_rotation_xz = params->tube_platform_joint_rotation[own][0][2];
-        const real tube_platform_joint_rotation_yx = params->tube_platform_joint_rotation[own][1][0];
-        const real tube_platform_joint_rotation_yy = params->tube_platform_joint_rotation[own][1][1];
-        const real tube_platform_joint_rotation_yz = params->tube_platform_joint_rotation[own][1][2];
-        const real tube_platform_joint_rotation_zx = params->tube_platform_joint_rotation[own][2][0];
-        const real tube_platform_joint_rotation_zy = params->tube_platform_joint_rotation[own][2][1];
-        const real tube_platform_joint_rotation_zz = params->tube_platform_joint_rotation[own][2][2];
-        const real tube_link2_mass = params->tube_link2_mass[own];
+        KEEP_OF_LEG(tube_base_point_x, params->tube_base_point[own][0]);
+        KEEP_OF_LEG(tube_base_point_y, params->tube_base_point[own][1]);
+        KEEP_OF_LEG(tube_base_point_z, params->tube_base_point[own][2]);
+        KEEP_OF_LEG(tube_base_frame_xx, params->tube_base_frame[own][0][0]);
+        KEEP_OF_LEG(tube_base_frame_xy, params->tube_base_frame[own][0][1]);
+        KEEP_OF_LEG(tube_base_frame_xz, params->tube_base_frame[own][0][2]);
+        KEEP_OF_LEG(tube_base_frame_yx, params->tube_base_frame[own][1][0]);
+        KEEP_OF_LEG(tube_base_frame_yy, params->tube_base_frame[own][1][1]);
+        KEEP_OF_LEG(tube_base_frame_yz, params->tube_base_frame[own][1][2]);
+        KEEP_OF_LEG(tube_base_frame_zx, params->tube_base_frame[own][2][0]);
+        KEEP_OF_LEG(tube_base_frame_zy, params->tube_base_frame[own][2][1]);
+        KEEP_OF_LEG(tube_base_frame_zz, params->tube_base_frame[own][2][2]);
+        KEEP_OF_LEG(tube_platform_point_x, params->tube_platform_point[own][0]);
+        KEEP_OF_LEG(tube_platform_point_y, params->tube_platform_point[own][1]);
+        KEEP_OF_LEG(tube_platform_point_z, params->tube_platform_point[own][2]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_xx,
+            params->tube_platform_joint_rotation[own][0][0]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_xy,
+            params->tube_platform_joint_rotation[own][0][1]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_xz,
+            params->tube_platform_joint_rotation[own][0][2]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_yx,
+            params->tube_platform_joint_rotation[own][1][0]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_yy,
+            params->tube_platform_joint_rotation[own][1][1]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_yz,
+            params->tube_platform_joint_rotation[own][1][2]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_zx,
+            params->tube_platform_joint_rotation[own][2][0]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_zy,
+            params->tube_platform_joint_rotation[own][2][1]);
+        KEEP_OF_LEG(tube_platform_joint_rotation_zz,
+            params->tube_platform_joint_rotation[own][2][2]);
+        KEEP_OF_LEG(tube_link2_mass, params->tube_link2_mass[own]);
         const real tube_link2_centre_of_mass_x = params->tube_link2_centre_of_mass[own][0];
         const real tube_link2_centre_of_mass_y = params->tube_link2_centre_of_mass[own][1];
         const real tube_link2_centre_of_mass_z = params->tube_link2_centre_of_mass[own][2];
@@ -914,7 +895,7 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real tube_link2_inertia_yy = params->tube_link2_inertia[own][1][1];
         const real tube_link2_inertia_yz = params->tube_link2_inertia[own][1][2];
         const real tube_link2_inertia_zz = params->tube_link2_inertia[own][2][2];
-        const real tube_link3_mass = params->tube_link3_mass[own];
+        KEEP_OF_LEG(tube_link3_mass, params->tube_link3_mass[own]);
         const real tube_link3_centre_of_mass_x = params->tube_link3_centre_of_mass[own][0];
         const real tube_link3_centre_of_mass_y = params->tube_link3_centre_of_mass[own][1];
         const real tube_link3_centre_of_mass_z = params->tube_link3_centre_of_mass[own][2];
@@ -925,24 +906,24 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real tube_link3_inertia_yz = params->tube_link3_inertia[own][1][2];
         const real tube_link3_inertia_zz = params->tube_link3_inertia[own][2][2];
         static const signed char signs_tube_branch_1[] = {1};
-        const real tube_branch_1 = signs_tube_branch_1[own];
+        KEEP_OF_LEG(tube_branch_1, signs_tube_branch_1[own]);
         static const signed char signs_tube_branch_2[] = {1};
-        const real tube_branch_2 = signs_tube_branch_2[own];
+        KEEP_OF_LEG(tube_branch_2, signs_tube_branch_2[own]);
         /* (tube-h_2) first moment of link 2 about the origin of link 2 */
-        const real tube_h_2_in_spec2_x = tube_link2_centre_of_mass_x*tube_link2_mass;
-        const real tube_h_2_in_spec2_y = tube_link2_centre_of_mass_y*tube_link2_mass;
-        const real tube_h_2_in_spec2_z = tube_link2_centre_of_mass_z*tube_link2_mass;
+        KEEP_OF_LEG(tube_h_2_in_spec2_x, tube_link2_centre_of_mass_x*tube_link2_mass);
+        KEEP_OF_LEG(tube_h_2_in_spec2_y, tube_link2_centre_of_mass_y*tube_link2_mass);
+        KEEP_OF_LEG(tube_h_2_in_spec2_z, tube_link2_centre_of_mass_z*tube_link2_mass);
         /* (tube-h_3) first moment of link 3 about the origin of link 3 */
-        const real tube_h_3_in_spec2_x = tube_link3_centre_of_mass_x*tube_link3_mass;
-        const real tube_h_3_in_spec2_y = tube_link3_centre_of_mass_y*tube_link3_mass;
-        const real tube_h_3_in_spec2_z = tube_link3_centre_of_mass_z*tube_link3_mass;
+        KEEP_OF_LEG(tube_h_3_in_spec2_x, tube_link3_centre_of_mass_x*tube_link3_mass);
+        KEEP_OF_LEG(tube_h_3_in_spec2_y, tube_link3_centre_of_mass_y*tube_link3_mass);
+        KEEP_OF_LEG(tube_h_3_in_spec2_z, tube_link3_centre_of_mass_z*tube_link3_mass);
         /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_t = gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx +
-            gravity_z*tube_base_frame_zx;
-        const real tube_acc_3_t_2 = gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy +
-            gravity_z*tube_base_frame_zy;
-        const real tube_acc_3_t_3 = gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz +
-            gravity_z*tube_base_frame_zz;
+        KEEP_OF_LEG(tube_acc_3_t, gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx +
+            gravity_z*tube_base_frame_zx);
+        KEEP_OF_LEG(tube_acc_3_t_2, gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy +
+            gravity_z*tube_base_frame_zy);
+        KEEP_OF_LEG(tube_acc_3_t_3, gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz +
+            gravity_z*tube_base_frame_zz);
         /* (tube-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real tube_J_group_2_t = tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_x;
         const real tube_J_group_2_t_2 = tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_y;
@@ -954,148 +935,76 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real tube_J_group_2_t_7 = tube_link3_centre_of_mass_z*tube_link3_centre_of_mass_z;
         const real tube_J_group_2_t_8 = tube_J_group_2_t_5 + tube_J_group_2_t_6 +
             tube_J_group_2_t_7;
-        const real tube_J_group_2_in_axes2_xx = tube_link2_inertia_xx + tube_link3_inertia_xx -
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_xx, tube_link2_inertia_xx + tube_link3_inertia_xx -
             tube_link2_mass*(tube_J_group_2_t - tube_J_group_2_t_4) -
-            tube_link3_mass*(tube_J_group_2_t_5 - tube_J_group_2_t_8);
-        const real tube_J_group_2_in_axes2_xy =
+            tube_link3_mass*(tube_J_group_2_t_5 - tube_J_group_2_t_8));
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_xy,
             tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_z*tube_link2_mass +
             tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_z*tube_link3_mass -
-            tube_link2_inertia_xz - tube_link3_inertia_xz;
-        const real tube_J_group_2_in_axes2_xz = tube_link2_inertia_xy + tube_link3_inertia_xy -
+            tube_link2_inertia_xz - tube_link3_inertia_xz);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_xz, tube_link2_inertia_xy + tube_link3_inertia_xy -
             tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_y*tube_link2_mass -
-            tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_y*tube_link3_mass;
-        const real tube_J_group_2_in_axes2_yy = tube_link2_inertia_zz + tube_link3_inertia_zz -
+            tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_y*tube_link3_mass);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_yy, tube_link2_inertia_zz + tube_link3_inertia_zz -
             tube_link2_mass*(tube_J_group_2_t_3 - tube_J_group_2_t_4) -
-            tube_link3_mass*(tube_J_group_2_t_7 - tube_J_group_2_t_8);
-        const real tube_J_group_2_in_axes2_yz =
+            tube_link3_mass*(tube_J_group_2_t_7 - tube_J_group_2_t_8));
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_yz,
             tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_z*tube_link2_mass +
             tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_z*tube_link3_mass -
-            tube_link2_inertia_yz - tube_link3_inertia_yz;
-        const real tube_J_group_2_in_axes2_zz = tube_link2_inertia_yy + tube_link3_inertia_yy -
+            tube_link2_inertia_yz - tube_link3_inertia_yz);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_zz, tube_link2_inertia_yy + tube_link3_inertia_yy -
             tube_link2_mass*(tube_J_group_2_t_2 - tube_J_group_2_t_4) -
-            tube_link3_mass*(tube_J_group_2_t_6 - tube_J_group_2_t_8);
+            tube_link3_mass*(tube_J_group_2_t_6 - tube_J_group_2_t_8));
         /* (tube-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real tube_Sigma_2_t = tube_J_group_2_in_axes2_xx + tube_J_group_2_in_axes2_yy +
             tube_J_group_2_in_axes2_zz;
         const real tube_Sigma_2_t_2 = R(0.5)*tube_Sigma_2_t;
-        const real tube_Sigma_2_in_axes2_xx = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_xx;
-        const real tube_Sigma_2_in_axes2_yy = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_yy;
-        const real tube_Sigma_2_in_axes2_zz = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(tube_Sigma_2_in_axes2_xx, tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(tube_Sigma_2_in_axes2_yy, tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(tube_Sigma_2_in_axes2_zz, tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_zz);
         /* (potential) */
-        const real tube_potential_t = tube_base_frame_xx*tube_base_point_x +
-            tube_base_frame_yx*tube_base_point_y + tube_base_frame_zx*tube_base_point_z;
-        const real tube_potential_t_2 = tube_base_frame_xy*tube_base_point_x +
-            tube_base_frame_yy*tube_base_point_y + tube_base_frame_zy*tube_base_point_z;
-        const real tube_potential_t_3 = tube_base_frame_xz*tube_base_point_x +
-            tube_base_frame_yz*tube_base_point_y + tube_base_frame_zz*tube_base_point_z;
-        KEEP_OF_LEG(tube_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(tube_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(tube_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(tube_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(tube_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(tube_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(tube_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(tube_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(tube_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(tube_acc_3_t);
-        KEEP_OF_LEG(tube_acc_3_t_2);
-        KEEP_OF_LEG(tube_acc_3_t_3);
-        KEEP_OF_LEG(tube_base_frame_xx);
-        KEEP_OF_LEG(tube_base_frame_xy);
-        KEEP_OF_LEG(tube_base_frame_xz);
-        KEEP_OF_LEG(tube_base_frame_yx);
-        KEEP_OF_LEG(tube_base_frame_yy);
-        KEEP_OF_LEG(tube_base_frame_yz);
-        KEEP_OF_LEG(tube_base_frame_zx);
-        KEEP_OF_LEG(tube_base_frame_zy);
-        KEEP_OF_LEG(tube_base_frame_zz);
-        KEEP_OF_LEG(tube_base_point_x);
-        KEEP_OF_LEG(tube_base_point_y);
-        KEEP_OF_LEG(tube_base_point_z);
-        KEEP_OF_LEG(tube_branch_1);
-        KEEP_OF_LEG(tube_branch_2);
-        KEEP_OF_LEG(tube_h_2_in_spec2_x);
-        KEEP_OF_LEG(tube_h_2_in_spec2_y);
-        KEEP_OF_LEG(tube_h_2_in_spec2_z);
-        KEEP_OF_LEG(tube_h_3_in_spec2_x);
-        KEEP_OF_LEG(tube_h_3_in_spec2_y);
-        KEEP_OF_LEG(tube_h_3_in_spec2_z);
-        KEEP_OF_LEG(tube_link2_mass);
-        KEEP_OF_LEG(tube_link3_mass);
-        KEEP_OF_LEG(tube_platform_joint_rotation_xx);
-        KEEP_OF_LEG(tube_platform_joint_rotation_xy);
-        KEEP_OF_LEG(tube_platform_joint_rotation_xz);
-        KEEP_OF_LEG(tube_platform_joint_rotation_yx);
-        KEEP_OF_LEG(tube_platform_joint_rotation_yy);
-        KEEP_OF_LEG(tube_platform_joint_rotation_yz);
-        KEEP_OF_LEG(tube_platform_joint_rotation_zx);
-        KEEP_OF_LEG(tube_platform_joint_rotation_zy);
-        KEEP_OF_LEG(tube_platform_joint_rotation_zz);
-        KEEP_OF_LEG(tube_platform_point_x);
-        KEEP_OF_LEG(tube_platform_point_y);
-        KEEP_OF_LEG(tube_platform_point_z);
-        KEEP_OF_LEG(tube_potential_t);
-        KEEP_OF_LEG(tube_potential_t_2);
-        KEEP_OF_LEG(tube_potential_t_3);
+        KEEP_OF_LEG(tube_potential_t, tube_base_frame_xx*tube_base_point_x +
+            tube_base_frame_yx*tube_base_point_y + tube_base_frame_zx*tube_base_point_z);
+        KEEP_OF_LEG(tube_potential_t_2, tube_base_frame_xy*tube_base_point_x +
+            tube_base_frame_yy*tube_base_point_y + tube_base_frame_zy*tube_base_point_z);
+        KEEP_OF_LEG(tube_potential_t_3, tube_base_frame_xz*tube_base_point_x +
+            tube_base_frame_yz*tube_base_point_y + tube_base_frame_zz*tube_base_point_z);
         b_c_tube_in_platform_x += tube_platform_point_x;
         b_c_tube_in_platform_y += tube_platform_point_y;
         b_c_tube_in_platform_z += tube_platform_point_z;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.2)*b_c_tube_in_platform_x +
-        R(0.2)*b_c_ups_in_platform_x;
-    const real b_c_in_platform_y = R(0.2)*b_c_tube_in_platform_y +
-        R(0.2)*b_c_ups_in_platform_y;
-    const real b_c_in_platform_z = R(0.2)*b_c_tube_in_platform_z +
-        R(0.2)*b_c_ups_in_platform_z;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.2)*b_c_tube_in_platform_x + R(0.2)*b_c_ups_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.2)*b_c_tube_in_platform_y + R(0.2)*b_c_ups_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.2)*b_c_tube_in_platform_z + R(0.2)*b_c_ups_in_platform_z);
     return OK;
 }
 
@@ -2081,14 +1990,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -2127,7 +2036,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -2399,7 +2308,7 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (tube-nd_m3) rate of moment direction 3 */
     v->tube_end_p3_in_axes2_y = v->tube_e_1_in_axes2_x*tube_n_m3_t_4 -
         v->tube_c_2*tube_n_m3_t_3;
-    /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (tube-acc_3) */
     const real tube_acc_3_t_4 = m->tube_acc_3_t[i]*v->tube_c_1 +
         m->tube_acc_3_t_2[i]*v->tube_s_1;
     v->tube_g_in_axes2_z = m->tube_acc_3_t_2[i]*v->tube_c_1 - m->tube_acc_3_t[i]*v->tube_s_1;
@@ -2455,7 +2364,7 @@ INLINE void stage_tube_A_X(size_t w, size_t j, const real *A, values_tube *v)
 INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_tube *v)
 {
-    /* (tube-S_dot) velocity of the connection point */
+    /* (tube-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     const real tube_S_dot_t_3 = omega_y*v->tube_q_z - omega_z*v->tube_q_y;
@@ -2485,7 +2394,7 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
     const real tube_eta_3 = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
         v->tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
-    /* (tube-qd_1) rate of joint 1 */
+    /* (tube-qd_1) */
     v->tube_qd_1_t_2 = v->inv_tube_qd_1_t*(tube_eta_3*v->tube_m3_w_1_t -
         tube_eta_1*v->tube_m1_w_1_t + tube_eta_2*v->tube_m2_w_1_t);
     /* (tube-qd_2) rate of joint 2 */
@@ -2512,7 +2421,7 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real tube_bias_t_3 = 2*v->tube_S_dot_in_axes2_x;
     v->tube_bias_t_4 = tube_bias_t_3*v->tube_qd_2;
     v->tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y;
-    /* (tube-nd_m1) rate of moment direction 1 */
+    /* (tube-nd_m1) */
     const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
         v->tube_n_m1_in_axes2_z*tube_omega_in_axes2_x -
         v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
@@ -2528,7 +2437,7 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) -
         tube_nd_m1_in_axes2_y*tube_nu_1_t_2;
     v->tube_nu_1 = v->tube_end_p1_in_axes2_z*v->tube_zeta_2_in_axes2_y + tube_nu_1_t_4;
-    /* (tube-nd_m2) rate of moment direction 2 */
+    /* (tube-nd_m2) */
     const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
         v->tube_n_m2_in_axes2_y*tube_omega_in_axes2_z +
         v->tube_end_p2_in_axes2_z*tube_omega_1_t;
@@ -2542,7 +2451,7 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         tube_nu_1_t_3*(v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
         v->tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
     v->tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2;
-    /* (tube-nd_m3) rate of moment direction 3 */
+    /* (tube-nd_m3) */
     const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
         v->tube_end_p3_in_axes2_y*tube_omega_in_axes2_x -
         v->tube_end_p3_in_axes2_y*tube_omega_1_t;
@@ -2560,7 +2469,7 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->tube_f_3_t_2 = v->tube_W_2_in_axes2_xx*m->tube_h_3_in_spec2_x[i];
     v->tube_f_3_t_3 = m->tube_h_3_in_spec2_z[i]*(tube_W_2_t_2 + tube_f_3_t);
     v->tube_f_3_t_4 = m->tube_h_3_in_spec2_y[i]*(tube_W_2_t + tube_f_3_t);
-    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (tube-mu_2) */
     v->tube_mu_2_t = m->tube_J_group_2_in_axes2_yz[i]*(tube_W_2_t - tube_W_2_t_2);
     v->tube_mu_2_t_2 = m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_t - tube_W_2_t_2);
     v->tube_mu_2_t_3 = m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_t - tube_W_2_t);
@@ -2589,11 +2498,11 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *s, const real *A, v
         W_p_t_6*v->tube_q_z;
     v->tube_S_ddot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_ddot_x +
         v->axis_x_tube_axes2_y*tube_S_ddot_y + v->axis_x_tube_axes2_z*tube_S_ddot_z;
-    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
+    /* (tube-etad_1) */
     const real tube_etad_1 = v->tube_nu_1 - v->tube_etad_1_t;
-    /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
+    /* (tube-etad_2) */
     const real tube_etad_2 = v->tube_nu_2 - v->tube_etad_2_t;
-    /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
+    /* (tube-etad_3) */
     const real tube_etad_3 = v->tube_nu_3 - v->tube_etad_3_t;
     /* (tube-qdd_1) acceleration of joint 1 */
     v->tube_qdd_1_t = v->inv_tube_qd_1_t*(tube_etad_2*v->tube_m2_w_1_t +
@@ -2605,15 +2514,15 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *s, const real *A, v
 
 INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
 {
-    /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    /* (tube-m1_w_1) */
     const real tube_m1_w_1 = v->inv_tube_w_1_t_3*v->tube_m1_w_1_t;
-    /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    /* (tube-m2_w_1) */
     const real tube_m2_w_1 = -v->inv_tube_w_1_t_3*v->tube_m2_w_1_t;
-    /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
+    /* (tube-m3_w_1) */
     const real tube_m3_w_1_t_2 = v->inv_tube_w_1_t_3*v->tube_m3_w_1_t;
     /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
     const real tube_m1_w_2 = v->inv_tube_w_1_t_3*v->tube_w_1_t;
-    /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    /* (tube-m2_w_2) */
     const real tube_m2_w_2 = v->inv_tube_w_1_t_3*v->tube_m2_w_2_t;
     /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
     const real tube_m3_w_2 = v->inv_tube_w_1_t_3*v->tube_w_1_t_2;
@@ -3036,13 +2945,13 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
     const real tube_B_2_in_axes2_yx = v->tube_W_2_in_axes2_xy + v->tube_qdd_2;
     const real tube_B_2_in_axes2_zx = -v->tube_zeta_2_in_axes2_y - tube_alpha_2_in_axes2_y;
     const real tube_B_2_in_axes2_zy = v->tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
-    /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (tube-acc_3) */
     const real tube_acc_3_in_axes2_x = v->tube_S_ddot_in_axes2_x - v->tube_g_in_axes2_x;
     const real tube_acc_3_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y +
         v->tube_bias_t_2 + v->tube_q_3*v->tube_qdd_2;
     const real tube_acc_3_in_axes2_z = -v->tube_g_in_axes2_z - v->tube_bias_t_5 -
         v->tube_bias_t - tube_alpha_2_in_axes2_y*v->tube_q_3;
-    /* (tube-f_3) inertia force of link 3 less its weight */
+    /* (tube-f_3) */
     const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] +
         v->tube_f_3_t_2 + tube_alpha_1_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
         tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
@@ -3053,7 +2962,7 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
     const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
         v->tube_f_3_t_4 + tube_acc_3_in_axes2_z*m->tube_link3_mass[i] -
         tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
-    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (tube-mu_2) */
     const real tube_mu_2_in_axes2_x = v->tube_mu_2_t_4 + v->tube_mu_2_t +
         tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_t -
@@ -3120,7 +3029,7 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
 
 INLINE void stage_tube_constraint_bias_dynamics(values_tube *v)
 {
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    /* (tube-bias) */
     const real tube_bias_in_axes2_y = v->tube_bias_t_4 + v->tube_bias_t_2;
     const real tube_bias_in_axes2_z = -v->tube_bias_t_5 - 2*v->tube_bias_t;
     /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -3249,7 +3158,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
 INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_ups *v)
 {
-    /* (ups-S_dot) velocity of the connection point */
+    /* (ups-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
@@ -3264,10 +3173,10 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real ups_S_dot_z = t_dot_z + v->ups_S_dot_t_3;
     v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
         v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
         v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
         v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
     /* (ups-omega_1) angular velocity of link 1 */
@@ -3288,7 +3197,7 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
     v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
     v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
@@ -3331,7 +3240,7 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
     /* (ups-qdd_1) acceleration of joint 1 */
     v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
         - v->ups_qdd_2_t);
     v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
@@ -3415,7 +3324,7 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
     v->ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->ups_Z_a_t = v->ups_U_z*v->ups_q_y - v->ups_U_y*v->ups_q_z;
     v->ups_Z_a_t_2 = v->ups_U_x*v->ups_q_z - v->ups_U_z*v->ups_q_x;
     v->ups_Z_a_t_3 = v->ups_U_y*v->ups_q_x - v->ups_U_x*v->ups_q_y;
@@ -3472,7 +3381,7 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
     v->ups_Q_yz = v->axis_y_ups_axes2_y*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_4 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->ups_M_ta_t = v->ups_Q_t_10*v->ups_q_z + v->ups_Q_xz*v->ups_q_x;
     v->ups_M_ta_t_2 = v->ups_Q_t_10*v->ups_q_y - v->ups_Q_t_12*v->ups_q_x;
     v->ups_M_ta_t_3 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
@@ -3482,7 +3391,7 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     v->ups_M_ta_t_7 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
     v->ups_M_ta_t_8 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
     v->ups_M_ta_t_9 = ups_M_ta_t_4 - v->ups_Q_xz*v->ups_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->ups_M_aa_t = v->ups_M_ta_t_7*v->ups_q_y - v->ups_M_ta_t_3*v->ups_q_z;
     v->ups_M_aa_t_2 = v->ups_M_ta_t_5*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_y;
     v->ups_M_aa_t_3 = v->ups_M_ta_t_9*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
@@ -3493,7 +3402,7 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
 
 INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
-    /* (ups-S_ddot) acceleration of the connection point */
+    /* (ups-S_ddot) */
     v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
     /* (ups-alpha_1) angular acceleration of link 1 */
     const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
@@ -3505,10 +3414,10 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    /* (ups-phi_3) */
     v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
         - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 -
         v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] - v->ups_mu_2_t_5 -
         v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
@@ -3528,8 +3437,7 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
         ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
         m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
     v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
@@ -3585,7 +3493,7 @@ INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, r
     gather(&terms[3*count + k], add, v->ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_t */
     gather(&terms[7*count + k], add, v->ups_M_ta_t_9);  /* M_ta_ups_zz */
     gather(&terms[8*count + k], add, v->ups_M_ta_t);  /* M_ta_t_2 */
@@ -3594,7 +3502,7 @@ INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, r
     gather(&terms[11*count + k], add, v->ups_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->ups_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->ups_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->ups_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->ups_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->ups_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -3609,7 +3517,7 @@ INLINE void any_sums_ups_2(size_t k, size_t count, int add, const values_ups *v,
     gather(&terms[0*count + k], add, v->ups_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->ups_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->ups_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->ups_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->ups_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->ups_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -3621,7 +3529,7 @@ INLINE void any_entries_ups(size_t k, size_t count, const values_ups *v, real *o
     o[0*count + k] = v->axis_x_ups_axes2_x;
     o[1*count + k] = v->axis_x_ups_axes2_y;
     o[2*count + k] = v->axis_x_ups_axes2_z;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    /* (ups-H_a_3) */
     o[3*count + k] = v->ups_H_a_3_x;
     o[4*count + k] = v->ups_H_a_3_y;
     o[5*count + k] = v->ups_H_a_3_z;
@@ -3636,11 +3544,39 @@ INLINE void any_singular_ups(size_t k, const values_ups *v, real *o)
 
 INLINE void any_sums_tube(size_t k, size_t count, int add, const values_tube *v, real *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (M_tt) */
+    gather(&terms[18*count + k], add, v->tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[19*count + k], add, v->tube_Q_xy);  /* M_tt_xy_of_legs */
+    gather(&terms[0*count + k], add, v->tube_Q_xz);  /* M_tt_xz */
+    gather(&terms[1*count + k], add, v->tube_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[2*count + k], add, v->tube_Q_yz);  /* M_tt_yz */
+    gather(&terms[3*count + k], add, v->tube_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[20*count + k], add, v->tube_M_ta_t_4);  /* M_ta_xx_of_legs */
+    gather(&terms[21*count + k], add, v->tube_M_ta_t_5);  /* M_ta_xy_of_legs */
+    gather(&terms[7*count + k], add, v->tube_M_ta_t_6);  /* M_ta_xz_of_legs */
+    gather(&terms[8*count + k], add, v->tube_M_ta_t_7);  /* M_ta_yx_of_legs */
+    gather(&terms[22*count + k], add, v->tube_M_ta_t_8);  /* M_ta_yy_of_legs */
+    gather(&terms[9*count + k], add, v->tube_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[10*count + k], add, v->tube_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[11*count + k], add, v->tube_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[23*count + k], add, v->tube_M_ta_t_12);  /* M_ta_zz_of_legs */
+    /* (M_aa) */
+    gather(&terms[12*count + k], add, v->tube_M_aa_t_8);  /* M_aa_xx_of_legs */
+    gather(&terms[13*count + k], add, v->tube_M_aa_t_9);  /* M_aa_xy_of_legs */
+    gather(&terms[14*count + k], add, v->tube_M_aa_t_10);  /* M_aa_xz_of_legs */
+    gather(&terms[24*count + k], add, v->tube_M_aa_t_11);  /* M_aa_yy_of_legs */
+    gather(&terms[16*count + k], add, v->tube_M_aa_t_12);  /* M_aa_yz_of_legs */
+    gather(&terms[17*count + k], add, v->tube_M_aa_t_13);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_tube_2(size_t k, size_t count, int add, const values_tube *v, real *terms)
+{
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->tube_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->tube_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->tube_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->tube_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->tube_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->tube_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -3652,6 +3588,146 @@ INLINE void any_singular_tube(size_t k, const values_tube *v, real *o)
         LEAST_3) + UNLESS(magnitude(v->tube_f_c1_t) > LEAST_4) +
         UNLESS(magnitude(v->tube_size_c3) > LEAST_4) + UNLESS(magnitude(v->tube_w_1_t_3) >
         LEAST_4) + UNLESS(magnitude(v->tube_qd_1_t) > LEAST_4);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_t = sums[0*w + k];
+    const real M_tt_xx_of_legs = sums[20*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
+    const real M_tt_t_2 = sums[1*w + k];
+    const real M_tt_xy_of_legs = sums[21*w + k];
+    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_t = sums[6*w + k];
+    const real M_ta_ups_zz = sums[7*w + k];
+    const real M_ta_xx_of_legs = sums[22*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_ups_zz + M_ta_xx_of_legs;
+    const real M_ta_t_2 = sums[8*w + k];
+    const real M_ta_xy_of_legs = sums[23*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z - M_ta_t_2 + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yy_of_legs = sums[24*w + k];
+    const real M_ta_yy = M_ta_yy_of_legs - M_ta_t;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz_of_legs = sums[25*w + k];
+    const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_t = sums[17*w + k];
+    const real M_aa_yy_of_legs = sums[26*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_t + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -3681,7 +3757,7 @@ INLINE void any_entries_tube(size_t k, size_t count, const values_tube *v, real 
     o[0*count + k] = v->axis_y_tube_axes2_x;
     o[1*count + k] = v->axis_y_tube_axes2_y;
     o[2*count + k] = v->axis_y_tube_axes2_z;
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    /* (tube-Hk_a_1) */
     o[3*count + k] = v->tube_Hk_a_1_x;
     o[4*count + k] = v->tube_Hk_a_1_y;
     o[5*count + k] = v->tube_Hk_a_1_z;
@@ -3689,7 +3765,7 @@ INLINE void any_entries_tube(size_t k, size_t count, const values_tube *v, real 
     o[6*count + k] = v->axis_z_tube_axes2_x;
     o[7*count + k] = v->axis_z_tube_axes2_y;
     o[8*count + k] = v->axis_z_tube_axes2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    /* (tube-Hk_a_2) */
     o[9*count + k] = v->tube_Hk_a_2_x;
     o[10*count + k] = v->tube_Hk_a_2_y;
     o[11*count + k] = v->tube_Hk_a_2_z;
@@ -3765,7 +3841,7 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
     stage_ups_M_dynamics(m, i, &v);
     any_sums_ups(k, count, add, &v, terms);
-    any_sums_ups_2(k, count, add, &v, terms + 20*count);
+    any_sums_ups_2(k, count, add, &v, terms + 27*count);
     any_entries_ups(k, count, &v, o);
     any_singular_ups(k, &v, o + 6*count);
     o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
@@ -3781,59 +3857,33 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     stage_tube_M_dynamics(m, i, &v);
     stage_tube_Z_dynamics(m, i, &v);
     stage_tube_constraint_bias_dynamics(&v);
-    /* (M_tt) */
-    gather(&terms[26*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[27*count + k], add, v.tube_Q_xy);  /* M_tt_xy_of_legs */
-    gather(&terms[2*count + k], add, v.tube_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.tube_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.tube_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.tube_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[28*count + k], add, v.tube_M_ta_t_4);  /* M_ta_xx_of_legs */
-    gather(&terms[29*count + k], add, v.tube_M_ta_t_5);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.tube_M_ta_t_6);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.tube_M_ta_t_7);  /* M_ta_yx_of_legs */
-    gather(&terms[30*count + k], add, v.tube_M_ta_t_8);  /* M_ta_yy_of_legs */
-    gather(&terms[11*count + k], add, v.tube_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.tube_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.tube_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[31*count + k], add, v.tube_M_ta_t_12);  /* M_ta_zz_of_legs */
-    /* (M_aa) */
-    gather(&terms[14*count + k], add, v.tube_M_aa_t_8);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.tube_M_aa_t_9);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xz_of_legs */
-    gather(&terms[32*count + k], add, v.tube_M_aa_t_11);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.tube_M_aa_t_12);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.tube_M_aa_t_13);  /* M_aa_zz_of_legs */
-    any_sums_tube(k, count, add, &v, terms + 20*count);
-    /* (tube-n_c1) unit force of the constraint wrench */
+    any_sums_tube(k, count, add, &v, terms + 2*count);
+    any_sums_tube_2(k, count, add, &v, terms + 27*count);
+    /* (tube-n_c1) */
     o[0*count + k] = v.axis_y_tube_axes2_x;
     o[1*count + k] = v.axis_y_tube_axes2_y;
     o[2*count + k] = v.axis_y_tube_axes2_z;
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    /* (tube-Hk_a_1) */
     o[3*count + k] = v.tube_Hk_a_1_x;
     o[4*count + k] = v.tube_Hk_a_1_y;
     o[5*count + k] = v.tube_Hk_a_1_z;
-    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (tube-gamma_c1) */
     o[6*count + k] = v.tube_gamma_c1;
-    /* (tube-n_c2) unit force of the constraint wrench */
+    /* (tube-n_c2) */
     o[7*count + k] = v.axis_z_tube_axes2_x;
     o[8*count + k] = v.axis_z_tube_axes2_y;
     o[9*count + k] = v.axis_z_tube_axes2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    /* (tube-Hk_a_2) */
     o[10*count + k] = v.tube_Hk_a_2_x;
     o[11*count + k] = v.tube_Hk_a_2_y;
     o[12*count + k] = v.tube_Hk_a_2_z;
-    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (tube-gamma_c2) */
     o[13*count + k] = v.tube_gamma_c2;
-    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+    /* (tube-Hk_a_3) */
     o[14*count + k] = v.tube_mu_c3_x;
     o[15*count + k] = v.tube_mu_c3_y;
     o[16*count + k] = v.tube_mu_c3_z;
-    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (tube-gamma_c3) */
     o[17*count + k] = v.tube_gamma_c3;
     any_singular_tube(k, &v, o + 18*count);
     o[19*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
@@ -3872,142 +3922,15 @@ INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, con
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_t = sums[0*w + k];
-    const real M_tt_xx_of_legs = sums[26*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
-    const real M_tt_t_2 = sums[1*w + k];
-    const real M_tt_xy_of_legs = sums[27*w + k];
-    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[6*w + k];
-    const real M_ta_ups_zz = sums[7*w + k];
-    const real M_ta_xx_of_legs = sums[28*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_ups_zz + M_ta_xx_of_legs;
-    const real M_ta_t_2 = sums[8*w + k];
-    const real M_ta_xy_of_legs = sums[29*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z - M_ta_t_2 + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yy_of_legs = sums[30*w + k];
-    const real M_ta_yy = M_ta_yy_of_legs - M_ta_t;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    const real M_ta_zz_of_legs = sums[31*w + k];
-    const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_t = sums[17*w + k];
-    const real M_aa_yy_of_legs = sums[32*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_t + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 27*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)33)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
@@ -4099,30 +4022,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[20*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[21*count + k], add, v.tube_Q_xy);  /* M_tt_xy_of_legs */
-    gather(&terms[2*count + k], add, v.tube_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.tube_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.tube_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.tube_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[22*count + k], add, v.tube_M_ta_t_4);  /* M_ta_xx_of_legs */
-    gather(&terms[23*count + k], add, v.tube_M_ta_t_5);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.tube_M_ta_t_6);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.tube_M_ta_t_7);  /* M_ta_yx_of_legs */
-    gather(&terms[24*count + k], add, v.tube_M_ta_t_8);  /* M_ta_yy_of_legs */
-    gather(&terms[11*count + k], add, v.tube_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.tube_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.tube_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[25*count + k], add, v.tube_M_ta_t_12);  /* M_ta_zz_of_legs */
-    /* (M_aa) */
-    gather(&terms[14*count + k], add, v.tube_M_aa_t_8);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.tube_M_aa_t_9);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xz_of_legs */
-    gather(&terms[26*count + k], add, v.tube_M_aa_t_11);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.tube_M_aa_t_12);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.tube_M_aa_t_13);  /* M_aa_zz_of_legs */
+    any_sums_tube(k, count, add, &v, terms + 2*count);
     o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
         + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
@@ -4132,113 +4032,13 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_t = sums[0*w + k];
-    const real M_tt_xx_of_legs = sums[20*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
-    const real M_tt_t_2 = sums[1*w + k];
-    const real M_tt_xy_of_legs = sums[21*w + k];
-    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[6*w + k];
-    const real M_ta_ups_zz = sums[7*w + k];
-    const real M_ta_xx_of_legs = sums[22*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_ups_zz + M_ta_xx_of_legs;
-    const real M_ta_t_2 = sums[8*w + k];
-    const real M_ta_xy_of_legs = sums[23*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z - M_ta_t_2 + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yy_of_legs = sums[24*w + k];
-    const real M_ta_yy = M_ta_yy_of_legs - M_ta_t;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    const real M_ta_zz_of_legs = sums[25*w + k];
-    const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_t = sums[17*w + k];
-    const real M_aa_yy_of_legs = sums[26*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_t + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)27)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
@@ -4270,7 +4070,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -4338,41 +4138,13 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_Z_dynamics(m, i, &v);
-    any_sums_tube(k, count, add, &v, terms);
+    any_sums_tube_2(k, count, add, &v, terms);
     any_singular_tube(k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -4411,7 +4183,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -4465,7 +4237,7 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
@@ -4541,7 +4313,7 @@ INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const rea
 
 #define PASSED_IN_Hk ((size_t)18)
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
+NARROW APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
     real s[PASSED_IN_Hk] CLEARED;
     real o_tube[17*LEGS(LEGS_OF_tube)] CLEARED;
@@ -4588,14 +4360,11 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_constraint_bias_dynamics(&v);
-    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (tube-gamma_c1) */
     o[0*count + k] = v.tube_gamma_c1;
-    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (tube-gamma_c2) */
     o[1*count + k] = v.tube_gamma_c2;
-    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (tube-gamma_c3) */
     o[2*count + k] = v.tube_gamma_c3;
     any_singular_tube_3(k, &v, o + 3*count);
     o[4*count + k] = v.tube_gamma_c1 + (v.tube_gamma_c2 + v.tube_gamma_c3);
@@ -4726,19 +4495,18 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
     const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
     const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_t */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_t_2 */
     gather(&terms[2*count + k], add, ups_c_z);  /* R_t_t_3 */
@@ -4811,7 +4579,7 @@ INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_t = sums[0*w + k];
     const real R_t_x_of_legs = sums[6*w + k];
     const real f_p_x = s[18*w + k];
@@ -4824,7 +4592,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[8*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_t_3 + R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -4847,8 +4615,8 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 #define PASSED_IN_required ((size_t)24)
 #define SUMS_OF_required ((size_t)9)
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, real *Hk, status_flags *t)
+NARROW APART void required_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *required, real *H, real *Hk, status_flags *t)
 {
     real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
     real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
@@ -4894,21 +4662,21 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-q_1) displacement of joint 1 */
+    /* (ups-q_1) */
     const real ups_q_1 = angle(v.inv_ups_root_1*ups_S_in_turn1_y,
         v.inv_ups_root_1*ups_S_in_turn1_x);
-    /* (ups-q_2) displacement of joint 2 */
+    /* (ups-q_2) */
     const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
     o[1*count + k] = ups_q_2;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     o[2*count + k] = v.ups_q_3;
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1);
@@ -4932,13 +4700,13 @@ INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t i, 
     stage_tube_X(m, w, i, j, s, X, &v);
     /* (tube-q_1) displacement of joint 1 */
     const real tube_q_1 = angle(v.tube_s_1, v.tube_c_1);
-    /* (tube-q_2) displacement of joint 2 */
+    /* (tube-q_2) */
     const real tube_q_2 = angle(-v.tube_e_1_in_axes2_x, v.tube_c_2);
     /* (tube-q_1) */
     o[0*count + k] = tube_q_1;
     /* (tube-q_2) */
     o[1*count + k] = tube_q_2;
-    /* (tube-q_3) displacement of joint 3 */
+    /* (tube-q_3) */
     o[2*count + k] = v.tube_q_3;
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3);
@@ -4957,7 +4725,8 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t 
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -5020,9 +4789,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     o[0*count + k] = v.ups_qd_1;
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
@@ -5046,9 +4815,9 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_V_X(m, w, i, j, V, &v);
-    /* (tube-qd_1) rate of joint 1 */
+    /* (tube-qd_1) */
     o[0*count + k] = -v.tube_qd_1_t_2;
-    /* (tube-qd_2) rate of joint 2 */
+    /* (tube-qd_2) */
     o[1*count + k] = v.tube_qd_2;
     /* (tube-qd_3) rate of joint 3 */
     o[2*count + k] = v.tube_S_dot_in_axes2_x;
@@ -5068,8 +4837,8 @@ INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, 
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -5133,11 +4902,11 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, A, &v);
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    /* (ups-rel) */
     const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
-    /* (ups-qdd_1) acceleration of joint 1 */
+    /* (ups-qdd_1) */
     o[0*count + k] = v.ups_qdd_1;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
@@ -5166,9 +4935,9 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
     /* (tube-rel) acceleration of the connection point left to the joint accelerations */
     const real tube_rel_in_axes2_x = v.tube_S_ddot_in_axes2_x -
         v.tube_W_2_in_axes2_xx*v.tube_q_3;
-    /* (tube-qdd_1) acceleration of joint 1 */
+    /* (tube-qdd_1) */
     o[0*count + k] = -v.tube_qdd_1_t;
-    /* (tube-qdd_2) acceleration of joint 2 */
+    /* (tube-qdd_2) */
     o[1*count + k] = v.tube_qdd_2;
     /* (tube-qdd_3) acceleration of joint 3 */
     o[2*count + k] = tube_rel_in_axes2_x;
@@ -5188,8 +4957,8 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -5282,7 +5051,8 @@ INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, 
 
 #define PASSED_IN_constraints ((size_t)18)
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
+NARROW APART void constraints_run(const prepared *m, const real *X, real *constraints,
+    status_flags *t)
 {
     real s[PASSED_IN_constraints] CLEARED;
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
@@ -5328,7 +5098,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (ups-acc_3) */
     const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
     const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
     const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
@@ -5352,7 +5122,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = ups_c_true_x;
     o[1*count + k] = ups_c_true_y;
     o[2*count + k] = ups_c_true_z;
-    /* (ups-w_3) reciprocal vector 3 */
+    /* (ups-w_3) */
     o[3*count + k] = v.axis_x_ups_axes2_x;
     o[4*count + k] = v.axis_x_ups_axes2_y;
     o[5*count + k] = v.axis_x_ups_axes2_z;
@@ -5380,32 +5150,31 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size
     stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_A_V_X(w, j, s, A, &v);
     stage_tube_legs_required(m, i, &v);
-    /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (tube-c) */
     o[0*count + k] = -v.tube_c_t;
     o[1*count + k] = -v.tube_c_t_2;
     o[2*count + k] = -v.tube_c_t_3;
-    /* (tube-c_m) moment of the leg on the platform without actuation */
+    /* (tube-c_m) */
     o[3*count + k] = v.tube_c_m_x;
     o[4*count + k] = v.tube_c_m_y;
     o[5*count + k] = v.tube_c_m_z;
-    /* (tube-n_c1) unit force of the constraint wrench */
+    /* (tube-n_c1) */
     o[6*count + k] = v.axis_y_tube_axes2_x;
     o[7*count + k] = v.axis_y_tube_axes2_y;
     o[8*count + k] = v.axis_y_tube_axes2_z;
-    /* (tube-mu_c1) the moment that goes with it */
+    /* (tube-mu_c1) */
     o[9*count + k] = v.tube_mu_c1_x;
     o[10*count + k] = v.tube_mu_c1_y;
     o[11*count + k] = v.tube_mu_c1_z;
-    /* (tube-n_c2) unit force of the constraint wrench */
+    /* (tube-n_c2) */
     o[12*count + k] = v.axis_z_tube_axes2_x;
     o[13*count + k] = v.axis_z_tube_axes2_y;
     o[14*count + k] = v.axis_z_tube_axes2_z;
-    /* (tube-mu_c2) the moment that goes with it */
+    /* (tube-mu_c2) */
     o[15*count + k] = v.tube_mu_c2_x;
     o[16*count + k] = v.tube_mu_c2_y;
     o[17*count + k] = v.tube_mu_c2_z;
-    /* (tube-mu_c3) the moment that goes with it */
+    /* (tube-mu_c3) */
     o[18*count + k] = v.tube_mu_c3_x;
     o[19*count + k] = v.tube_mu_c3_y;
     o[20*count + k] = v.tube_mu_c3_z;
@@ -5476,7 +5245,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -5491,12 +5260,12 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    /* (ups-root_1) */
     const real ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
     const real ups_root_1_2 = m->ups_branch_1[i]*root(ups_root_1_t_5);
@@ -5505,10 +5274,10 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     const real ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x;
     /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
     const real ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     const real ups_q_3_t_3 = v.ups_q_3_t + ups_root_1_t_5;
     const real ups_q_3_2 = m->ups_branch_2[i]*root(ups_q_3_t_3);
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (ups-c_2) */
     const real inv_ups_q_3_2 = 1/ups_q_3_2;
     const real ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2;
     /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
@@ -5649,7 +5418,7 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
         R(0.7231023985306559)*root(ups_pivot_size_2)),
         R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
     const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
     const real ups_spread_t_3 = m->b_c_in_platform_z - m->ups_platform_point_z[i];
@@ -5740,7 +5509,7 @@ INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, co
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_tube = sums[1*w + k];
     const real spread_ups = sums[0*w + k];
     const real spread_ = root(R(0.2)*spread_tube + R(0.2)*spread_ups);
@@ -5752,8 +5521,8 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)2)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
@@ -5790,7 +5559,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 /* ---- what users call, as steps over these ---- */
 
-int quadrupod_M(const prepared *m, const real *X, real *M_out)
+NARROW int quadrupod_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -5813,7 +5582,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int quadrupod_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int quadrupod_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -5837,7 +5606,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int quadrupod_H(const prepared *m, const real *X, real *H_out)
+NARROW int quadrupod_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -5860,7 +5629,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int quadrupod_Hk(const prepared *m, const real *X, real *Hk_out)
+NARROW int quadrupod_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     status_flags why;
     start(1, &why);
@@ -5883,7 +5652,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
-int quadrupod_constraints(const prepared *m, const real *X, real *constraints_out)
+NARROW int quadrupod_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     status_flags why;
     start(1, &why);
@@ -5906,7 +5675,7 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     copy_side_by_side(3, constraints, constraints_out);
 }
 
-int quadrupod_constraint_bias(const prepared *m, const real *X, const real *V, real
+NARROW int quadrupod_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
     status_flags why;
@@ -5932,7 +5701,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
-int quadrupod_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int quadrupod_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -5955,7 +5724,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int quadrupod_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int quadrupod_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -5980,8 +5749,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int quadrupod_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd_out)
+NARROW int quadrupod_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -6007,8 +5776,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int quadrupod_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out,
-    real *H_out)
+NARROW int quadrupod_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
     status_flags why;
@@ -6096,8 +5865,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_lambda_[] = {1, 0, 2};
 static const real sizes_lambda_[] = {1.0, 1.0, 1.0};
 
-static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, const real *weights, real *tau_out, real *lambda_out)
+NARROW static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, const real *weights, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     static const real no_weights[NU] = {1, 1, 1, 1};
@@ -6152,8 +5921,8 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     return final_status(&why, NC, lambda_out);
 }
 
-int quadrupod_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out)
+NARROW int quadrupod_forward_dynamics(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
@@ -6226,8 +5995,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int quadrupod_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int quadrupod_complete_acceleration(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -6240,8 +6009,8 @@ int quadrupod_complete_acceleration(const prepared *m, const real *X, const real
     return finished(NV, completed, completed_out, &why);
 }
 
-int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
-    real *wrench, real *forces_out)
+NARROW int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2, 3};
@@ -6289,8 +6058,8 @@ int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, con
     return finished(6*NL, forces, forces_out, &why);
 }
 
-int quadrupod_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int quadrupod_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -6308,7 +6077,7 @@ int quadrupod_energy(const prepared *m, const real *X, const real *V, real *kine
     return final_status(&why, 1, potential_out);
 }
 
-int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -6342,7 +6111,7 @@ int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real 
     return final_status(&why, NL, legs_out);
 }
 
-int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
+NARROW int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
@@ -6378,7 +6147,7 @@ int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigm
     return final_status(&why, NL, legs_out);
 }
 
-int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -6430,8 +6199,8 @@ int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out
     return final_status(&why, 1, isotropy_out);
 }
 
-int quadrupod_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int quadrupod_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
@@ -6466,9 +6235,9 @@ int quadrupod_singularity_distance(const prepared *m, const real *X, real *actua
     return final_status(&why, 1, legs_out);
 }
 
-int quadrupod_force_distribution(const prepared *m, const real *X, const real *V, const real *A,
-    const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau_out, real *lambda_out)
+NARROW int quadrupod_force_distribution(const prepared *m, const real *X, const real *V, const
+    real *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference,
+    real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     static const real no_reference[NU] = {0};
@@ -6515,7 +6284,7 @@ int quadrupod_force_distribution(const prepared *m, const real *X, const real *V
     return final_status(&why, NC, lambda_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[4] = {0}, subtract_1[NU] CLEARED,
@@ -6536,7 +6305,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(7, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*(NU + NC)] = {0};
     status_flags why;
@@ -6593,8 +6362,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int quadrupod_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int quadrupod_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -6604,7 +6373,7 @@ int quadrupod_forward_kinematics(const prepared *m, const real *q_actuated, cons
     return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
+NARROW static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
     real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
@@ -6617,7 +6386,7 @@ static int constraint_residual_one(const prepared *m, const real *X, real *resid
     return finished(NC, residual, residual_out, &why);
 }
 
-static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -6674,7 +6443,7 @@ static int search_constraint_residual(const prepared *m, const real *start, real
 }
 
 
-int quadrupod_project(const prepared *m, const real *X, real *projected_out)
+NARROW int quadrupod_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     status_flags why;
@@ -6684,7 +6453,8 @@ int quadrupod_project(const prepared *m, const real *X, real *projected_out)
     return finished(NQ, projected, projected_out, &why);
 }
 
-int quadrupod_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
+NARROW int quadrupod_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
     (void)m;
     (void)X;
@@ -6699,7 +6469,7 @@ int quadrupod_dissipation(const prepared *m, const real *X, const real *V, real 
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int quadrupod_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int quadrupod_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -6710,7 +6480,7 @@ int quadrupod_momentum(const prepared *m, const real *X, const real *V, real *mo
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int quadrupod_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int quadrupod_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -6726,7 +6496,7 @@ int quadrupod_joint_margins(const prepared *m, const real *X, real *margins_out)
     return final_status(&why, NJ, margins_out);
 }
 
-int quadrupod_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int quadrupod_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -6740,7 +6510,7 @@ int quadrupod_within_limits(const prepared *m, const real *X, real *within_out)
     return finished(1, within, within_out, &why);
 }
 
-int quadrupod_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int quadrupod_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -6751,7 +6521,7 @@ int quadrupod_actuator_positions(const prepared *m, const real *X, real *q_out)
     return finished(NU, q, q_out, &why);
 }
 
-int quadrupod_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int quadrupod_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -6762,8 +6532,8 @@ int quadrupod_actuator_rates(const prepared *m, const real *X, const real *V, re
     return finished(NU, qd, qd_out, &why);
 }
 
-int quadrupod_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int quadrupod_actuator_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -6774,7 +6544,7 @@ int quadrupod_actuator_accelerations(const prepared *m, const real *X, const rea
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int quadrupod_power(const prepared *m, const real *X, const real *V, const real *tau, real
+NARROW int quadrupod_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
@@ -6787,7 +6557,7 @@ int quadrupod_power(const prepared *m, const real *X, const real *V, const real 
     return finished(1, power, power_out, &why);
 }
 
-int quadrupod_rotation(const real *X, real *R_out)
+NARROW int quadrupod_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -6798,19 +6568,18 @@ int quadrupod_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int quadrupod_pose(const real *t, const real *R, real *X_out)
+NARROW int quadrupod_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int quadrupod_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int quadrupod_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -6823,19 +6592,18 @@ int quadrupod_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int quadrupod_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int quadrupod_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int quadrupod_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int quadrupod_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -6851,7 +6619,7 @@ int quadrupod_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int quadrupod_difference(const real *X0, const real *X1, real *step_out)
+NARROW int quadrupod_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -6867,7 +6635,7 @@ int quadrupod_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int quadrupod_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int quadrupod_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && SIXBAR_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && SIXBAR_LANES >= 4 && VECTORS_OF(SIXBAR_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -274,11 +291,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -287,10 +306,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -392,11 +412,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -653,8 +670,9 @@ static int acceptable(const sixbar_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
 {
@@ -673,8 +691,8 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
     real b_c_rrr_in_platform_x = 0;
     real b_c_rrr_in_platform_y = 0;
     real legs_size_rrr = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -687,96 +705,100 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         const size_t own = leg;
-        const real rrr_leg1_base_point_x = params->rrr_leg1_base_point[own][0];
-        const real rrr_leg1_base_point_y = params->rrr_leg1_base_point[own][1];
-        const real rrr_leg1_base_frame_xx = params->rrr_leg1_base_frame[own][0][0];
-        const real rrr_leg1_base_frame_xy = params->rrr_leg1_base_frame[own][0][1];
-        const real rrr_leg1_base_frame_yx = params->rrr_leg1_base_frame[own][1][0];
-        const real rrr_leg1_base_frame_yy = params->rrr_leg1_base_frame[own][1][1];
-        const real rrr_leg1_platform_point_x = params->rrr_leg1_platform_point[own][0];
-        const real rrr_leg1_platform_point_y = params->rrr_leg1_platform_point[own][1];
-        const real rrr_leg1_joint2_offset_x = params->rrr_leg1_joint2_offset[own][0];
-        const real rrr_leg1_platform_joint_offset_x = params->rrr_leg1_platform_joint_offset[own][0];
-        const real rrr_leg1_link1_mass = params->rrr_leg1_link1_mass[own];
-        const real rrr_leg1_link1_centre_of_mass_x = params->rrr_leg1_link1_centre_of_mass[own][0];
-        const real rrr_leg1_link1_centre_of_mass_y = params->rrr_leg1_link1_centre_of_mass[own][1];
+        KEEP_OF_LEG(rrr_leg1_base_point_x, params->rrr_leg1_base_point[own][0]);
+        KEEP_OF_LEG(rrr_leg1_base_point_y, params->rrr_leg1_base_point[own][1]);
+        KEEP_OF_LEG(rrr_leg1_base_frame_xx, params->rrr_leg1_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrr_leg1_base_frame_xy, params->rrr_leg1_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrr_leg1_base_frame_yx, params->rrr_leg1_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrr_leg1_base_frame_yy, params->rrr_leg1_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrr_leg1_platform_point_x, params->rrr_leg1_platform_point[own][0]);
+        KEEP_OF_LEG(rrr_leg1_platform_point_y, params->rrr_leg1_platform_point[own][1]);
+        KEEP_OF_LEG(rrr_leg1_joint2_offset_x, params->rrr_leg1_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrr_leg1_platform_joint_offset_x,
+            params->rrr_leg1_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrr_leg1_link1_mass, params->rrr_leg1_link1_mass[own]);
+        const real rrr_leg1_link1_centre_of_mass_x =
+            params->rrr_leg1_link1_centre_of_mass[own][0];
+        const real rrr_leg1_link1_centre_of_mass_y =
+            params->rrr_leg1_link1_centre_of_mass[own][1];
         const real rrr_leg1_link1_inertia_zz = params->rrr_leg1_link1_inertia[own][2][2];
-        const real rrr_leg1_link2_mass = params->rrr_leg1_link2_mass[own];
-        const real rrr_leg1_link2_centre_of_mass_x = params->rrr_leg1_link2_centre_of_mass[own][0];
-        const real rrr_leg1_link2_centre_of_mass_y = params->rrr_leg1_link2_centre_of_mass[own][1];
+        KEEP_OF_LEG(rrr_leg1_link2_mass, params->rrr_leg1_link2_mass[own]);
+        const real rrr_leg1_link2_centre_of_mass_x =
+            params->rrr_leg1_link2_centre_of_mass[own][0];
+        const real rrr_leg1_link2_centre_of_mass_y =
+            params->rrr_leg1_link2_centre_of_mass[own][1];
         const real rrr_leg1_link2_inertia_zz = params->rrr_leg1_link2_inertia[own][2][2];
         static const signed char signs_rrr_leg1_branch_1[] = {1};
-        const real rrr_leg1_branch_1 = signs_rrr_leg1_branch_1[own];
+        KEEP_OF_LEG(rrr_leg1_branch_1, signs_rrr_leg1_branch_1[own]);
         /* (rrr_leg1-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrr_leg1_size_t = rrr_leg1_joint2_offset_x*rrr_leg1_joint2_offset_x;
         const real rrr_leg1_size_t_2 =
             rrr_leg1_platform_joint_offset_x*rrr_leg1_platform_joint_offset_x;
         const real rrr_leg1_size_t_3 = R(4.58151643161e-07) + rrr_leg1_size_t + rrr_leg1_size_t_2;
-        const real rrr_leg1_size = root(rrr_leg1_size_t_3);
+        KEEP_OF_LEG(rrr_leg1_size, root(rrr_leg1_size_t_3));
         /* (rrr_leg1-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_leg1_h_1_in_spec1_x = rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_mass;
-        const real rrr_leg1_h_1_in_spec1_y = rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_mass;
+        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_x, rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_mass);
+        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_y, rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_mass);
         /* (rrr_leg1-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_leg1_J_1_t =
             rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_centre_of_mass_x +
             rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_centre_of_mass_y;
-        const real rrr_leg1_J_1_in_spec1_zz = rrr_leg1_link1_inertia_zz +
-            rrr_leg1_J_1_t*rrr_leg1_link1_mass;
+        KEEP_OF_LEG(rrr_leg1_J_1_in_spec1_zz, rrr_leg1_link1_inertia_zz +
+            rrr_leg1_J_1_t*rrr_leg1_link1_mass);
         /* (rrr_leg1-rho_tip_2) connection point to the centre of mass of link 2 */
         const real rrr_leg1_rho_tip_2_in_spec2_x = rrr_leg1_link2_centre_of_mass_x -
             rrr_leg1_platform_joint_offset_x;
         /* (rrr_leg1-h_2) first moment of link 2 about the connection point */
-        const real rrr_leg1_h_2_in_spec2_x = rrr_leg1_link2_mass*rrr_leg1_rho_tip_2_in_spec2_x;
-        const real rrr_leg1_h_2_in_spec2_y = rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_mass;
+        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_x, rrr_leg1_link2_mass*rrr_leg1_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_y, rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_mass);
         /* (rrr_leg1-J_2) inertia tensor of link 2 about the connection point */
         const real rrr_leg1_J_2_t =
             rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_centre_of_mass_y +
             rrr_leg1_rho_tip_2_in_spec2_x*rrr_leg1_rho_tip_2_in_spec2_x;
-        const real rrr_leg1_J_2_in_spec2_zz = rrr_leg1_link2_inertia_zz +
-            rrr_leg1_J_2_t*rrr_leg1_link2_mass;
+        KEEP_OF_LEG(rrr_leg1_J_2_in_spec2_zz, rrr_leg1_link2_inertia_zz +
+            rrr_leg1_J_2_t*rrr_leg1_link2_mass);
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = R(0.5)*rrr_leg1_size_t;
-        const real rrr_leg1_Kd_1_t_2 = R(0.5)*rrr_leg1_size_t_2;
+        KEEP_OF_LEG(rrr_leg1_Kd_1_t, R(0.5)*rrr_leg1_size_t);
+        KEEP_OF_LEG(rrr_leg1_Kd_1_t_2, R(0.5)*rrr_leg1_size_t_2);
         /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1_t = rrr_leg1_size*rrr_leg1_size*rrr_leg1_size_t_3;
+        KEEP_OF_LEG(rrr_leg1_rho2_1_t, rrr_leg1_size*rrr_leg1_size*rrr_leg1_size_t_3);
         /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = 1/rrr_leg1_size_t;
+        KEEP_OF_LEG(inv_rrr_leg1_size_t, 1/rrr_leg1_size_t);
         /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = 1/rrr_leg1_size_t_2;
+        KEEP_OF_LEG(inv_rrr_leg1_size_t_2, 1/rrr_leg1_size_t_2);
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_axes2_y = 1/rrr_leg1_platform_joint_offset_x;
+        KEEP_OF_LEG(rrr_leg1_w_2_in_axes2_y, 1/rrr_leg1_platform_joint_offset_x);
         /* (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_leg1_d_phi_2_in_axes2_xy =
-            -rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_leg1_d_phi_2_in_axes2_xy,
+            -rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y);
         /* (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last
            link about the connection point */
-        const real rrr_leg1_Jc_1_in_axes1_zz = rrr_leg1_J_1_in_spec1_zz +
-            rrr_leg1_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrr_leg1_Jc_1_in_axes1_zz, rrr_leg1_J_1_in_spec1_zz +
+            rrr_leg1_J_2_in_spec2_zz);
         /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
-        const real rrr_leg1_d_Gamma_2_t = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_d_Gamma_2_in_axes2_y = rrr_leg1_d_Gamma_2_t + rrr_leg1_h_2_in_spec2_x;
+        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_t, rrr_leg1_J_2_in_spec2_zz*rrr_leg1_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_in_axes2_y, rrr_leg1_d_Gamma_2_t +
+            rrr_leg1_h_2_in_spec2_x);
         /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
            */
-        const real rrr_leg1_mu_1_t = gravity_x*rrr_leg1_base_frame_xx +
-            gravity_y*rrr_leg1_base_frame_yx;
-        const real rrr_leg1_mu_1_t_2 = gravity_x*rrr_leg1_base_frame_xy +
-            gravity_y*rrr_leg1_base_frame_yy;
+        KEEP_OF_LEG(rrr_leg1_mu_1_t, gravity_x*rrr_leg1_base_frame_xx +
+            gravity_y*rrr_leg1_base_frame_yx);
+        KEEP_OF_LEG(rrr_leg1_mu_1_t_2, gravity_x*rrr_leg1_base_frame_xy +
+            gravity_y*rrr_leg1_base_frame_yy);
         /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrr_leg1_rho2_1_t = 1/rrr_leg1_rho2_1_t;
-        const real inv_rrr_leg1_size = 1/rrr_leg1_size;
+        KEEP_OF_LEG(inv_rrr_leg1_rho2_1_t, 1/rrr_leg1_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_leg1_size, 1/rrr_leg1_size);
         /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_leg1_d_c_in_axes2_yy =
+        KEEP_OF_LEG(rrr_leg1_d_c_in_axes2_yy,
             -rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_y -
-            rrr_leg1_h_2_in_spec2_x*rrr_leg1_w_2_in_axes2_y;
+            rrr_leg1_h_2_in_spec2_x*rrr_leg1_w_2_in_axes2_y);
         /* (h_star) */
         const real rrr_leg1_h_star_t = rrr_leg1_link2_mass*rrr_leg1_platform_point_x;
         const real rrr_leg1_h_star_t_2 = rrr_leg1_link2_mass*rrr_leg1_platform_point_y;
@@ -787,47 +809,10 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_leg1_J_star_t_3 = rrr_leg1_J_star_t*rrr_leg1_link2_mass;
         const real rrr_leg1_J_star_t_4 = rrr_leg1_J_star_t_2*rrr_leg1_link2_mass;
         /* (potential) potential energy */
-        const real rrr_leg1_potential_t = rrr_leg1_base_frame_xx*rrr_leg1_base_point_x +
-            rrr_leg1_base_frame_yx*rrr_leg1_base_point_y;
-        const real rrr_leg1_potential_t_2 = rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
-            rrr_leg1_base_frame_yy*rrr_leg1_base_point_y;
-        KEEP_OF_LEG(inv_rrr_leg1_rho2_1_t);
-        KEEP_OF_LEG(inv_rrr_leg1_size);
-        KEEP_OF_LEG(inv_rrr_leg1_size_t);
-        KEEP_OF_LEG(inv_rrr_leg1_size_t_2);
-        KEEP_OF_LEG(rrr_leg1_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rrr_leg1_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrr_leg1_Jc_1_in_axes1_zz);
-        KEEP_OF_LEG(rrr_leg1_Kd_1_t);
-        KEEP_OF_LEG(rrr_leg1_Kd_1_t_2);
-        KEEP_OF_LEG(rrr_leg1_base_frame_xx);
-        KEEP_OF_LEG(rrr_leg1_base_frame_xy);
-        KEEP_OF_LEG(rrr_leg1_base_frame_yx);
-        KEEP_OF_LEG(rrr_leg1_base_frame_yy);
-        KEEP_OF_LEG(rrr_leg1_base_point_x);
-        KEEP_OF_LEG(rrr_leg1_base_point_y);
-        KEEP_OF_LEG(rrr_leg1_branch_1);
-        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_in_axes2_y);
-        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_t);
-        KEEP_OF_LEG(rrr_leg1_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_leg1_d_phi_2_in_axes2_xy);
-        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrr_leg1_joint2_offset_x);
-        KEEP_OF_LEG(rrr_leg1_link1_mass);
-        KEEP_OF_LEG(rrr_leg1_link2_mass);
-        KEEP_OF_LEG(rrr_leg1_mu_1_t);
-        KEEP_OF_LEG(rrr_leg1_mu_1_t_2);
-        KEEP_OF_LEG(rrr_leg1_platform_joint_offset_x);
-        KEEP_OF_LEG(rrr_leg1_platform_point_x);
-        KEEP_OF_LEG(rrr_leg1_platform_point_y);
-        KEEP_OF_LEG(rrr_leg1_potential_t);
-        KEEP_OF_LEG(rrr_leg1_potential_t_2);
-        KEEP_OF_LEG(rrr_leg1_rho2_1_t);
-        KEEP_OF_LEG(rrr_leg1_size);
-        KEEP_OF_LEG(rrr_leg1_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_leg1_potential_t, rrr_leg1_base_frame_xx*rrr_leg1_base_point_x +
+            rrr_leg1_base_frame_yx*rrr_leg1_base_point_y);
+        KEEP_OF_LEG(rrr_leg1_potential_t_2, rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
+            rrr_leg1_base_frame_yy*rrr_leg1_base_point_y);
         m_star_of_legs += rrr_leg1_link2_mass;
         h_star_in_platform_x_of_legs += rrr_leg1_h_star_t;
         h_star_in_platform_y_of_legs += rrr_leg1_h_star_t_2;
@@ -839,81 +824,81 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
-        const real rrr_base_point_x = params->rrr_base_point[own][0];
-        const real rrr_base_point_y = params->rrr_base_point[own][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        KEEP_OF_LEG(rrr_base_point_x, params->rrr_base_point[own][0]);
+        KEEP_OF_LEG(rrr_base_point_y, params->rrr_base_point[own][1]);
+        KEEP_OF_LEG(rrr_base_frame_xx, params->rrr_base_frame[own][0][0]);
+        KEEP_OF_LEG(rrr_base_frame_xy, params->rrr_base_frame[own][0][1]);
+        KEEP_OF_LEG(rrr_base_frame_yx, params->rrr_base_frame[own][1][0]);
+        KEEP_OF_LEG(rrr_base_frame_yy, params->rrr_base_frame[own][1][1]);
+        KEEP_OF_LEG(rrr_platform_point_x, params->rrr_platform_point[own][0]);
+        KEEP_OF_LEG(rrr_platform_point_y, params->rrr_platform_point[own][1]);
+        KEEP_OF_LEG(rrr_joint2_offset_x, params->rrr_joint2_offset[own][0]);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x, params->rrr_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(rrr_link1_mass, params->rrr_link1_mass[own]);
         const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
         const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
         const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        KEEP_OF_LEG(rrr_link2_mass, params->rrr_link2_mass[own]);
         const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
         const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1};
-        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        KEEP_OF_LEG(rrr_branch_1, signs_rrr_branch_1[own]);
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
         const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         const real rrr_size_t_3 = R(4.58151643161e-07) + rrr_size_t + rrr_size_t_2;
-        const real rrr_size = root(rrr_size_t_3);
+        KEEP_OF_LEG(rrr_size, root(rrr_size_t_3));
         /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x, rrr_link1_centre_of_mass_x*rrr_link1_mass);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y, rrr_link1_centre_of_mass_y*rrr_link1_mass);
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz, rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass);
         /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
         const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
             rrr_platform_joint_offset_x;
         /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x, rrr_link2_mass*rrr_rho_tip_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y, rrr_link2_centre_of_mass_y*rrr_link2_mass);
         /* (rrr-J_2) inertia tensor of link 2 about the connection point */
         const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
             rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
-        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz, rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass);
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        KEEP_OF_LEG(rrr_Kd_1_t, R(0.5)*rrr_size_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2, R(0.5)*rrr_size_t_2);
         /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        KEEP_OF_LEG(rrr_rho2_1_t, rrr_size*rrr_size*rrr_size_t_3);
         /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = 1/rrr_size_t;
+        KEEP_OF_LEG(inv_rrr_size_t, 1/rrr_size_t);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        KEEP_OF_LEG(inv_rrr_size_t_2, 1/rrr_size_t_2);
         /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y, 1/rrr_platform_joint_offset_x);
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy, -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y);
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz, rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz);
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
-        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        KEEP_OF_LEG(rrr_d_Gamma_2_t, rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x);
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        KEEP_OF_LEG(rrr_mu_1_t, gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_mu_1_t_2, gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
-        const real inv_rrr_size = 1/rrr_size;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t, 1/rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size, 1/rrr_size);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
-            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy, -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y);
         /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -923,47 +908,10 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
         /* (potential) */
-        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
-            rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
-            rrr_base_frame_yy*rrr_base_point_y;
-        KEEP_OF_LEG(inv_rrr_rho2_1_t);
-        KEEP_OF_LEG(inv_rrr_size);
-        KEEP_OF_LEG(inv_rrr_size_t);
-        KEEP_OF_LEG(inv_rrr_size_t_2);
-        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
-        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
-        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
-        KEEP_OF_LEG(rrr_Kd_1_t);
-        KEEP_OF_LEG(rrr_Kd_1_t_2);
-        KEEP_OF_LEG(rrr_base_frame_xx);
-        KEEP_OF_LEG(rrr_base_frame_xy);
-        KEEP_OF_LEG(rrr_base_frame_yx);
-        KEEP_OF_LEG(rrr_base_frame_yy);
-        KEEP_OF_LEG(rrr_base_point_x);
-        KEEP_OF_LEG(rrr_base_point_y);
-        KEEP_OF_LEG(rrr_branch_1);
-        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
-        KEEP_OF_LEG(rrr_d_Gamma_2_t);
-        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
-        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
-        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
-        KEEP_OF_LEG(rrr_joint2_offset_x);
-        KEEP_OF_LEG(rrr_link1_mass);
-        KEEP_OF_LEG(rrr_link2_mass);
-        KEEP_OF_LEG(rrr_mu_1_t);
-        KEEP_OF_LEG(rrr_mu_1_t_2);
-        KEEP_OF_LEG(rrr_platform_joint_offset_x);
-        KEEP_OF_LEG(rrr_platform_point_x);
-        KEEP_OF_LEG(rrr_platform_point_y);
-        KEEP_OF_LEG(rrr_potential_t);
-        KEEP_OF_LEG(rrr_potential_t_2);
-        KEEP_OF_LEG(rrr_rho2_1_t);
-        KEEP_OF_LEG(rrr_size);
-        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_potential_t, rrr_base_frame_xx*rrr_base_point_x +
+            rrr_base_frame_yx*rrr_base_point_y);
+        KEEP_OF_LEG(rrr_potential_t_2, rrr_base_frame_xy*rrr_base_point_x +
+            rrr_base_frame_yy*rrr_base_point_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -974,34 +922,23 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
     /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
-    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
+    KEEP(J_star_zz, J_star_in_platform_xx - J_star_t_5);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.5)*b_c_rrr_in_platform_x +
-        R(0.5)*b_c_rrr_leg1_in_platform_x;
-    const real b_c_in_platform_y = R(0.5)*b_c_rrr_in_platform_y +
-        R(0.5)*b_c_rrr_leg1_in_platform_y;
+    KEEP(b_c_in_platform_x, R(0.5)*b_c_rrr_in_platform_x + R(0.5)*b_c_rrr_leg1_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.5)*b_c_rrr_in_platform_y + R(0.5)*b_c_rrr_leg1_in_platform_y);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.5)*legs_size_rrr + R(0.5)*legs_size_rrr_leg1);
-    KEEP(J_star_zz);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(legs_size);
-    KEEP(m_star);
+    KEEP(legs_size, root(R(0.5)*legs_size_rrr + R(0.5)*legs_size_rrr_leg1));
     return OK;
 }
 
@@ -1464,7 +1401,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_2 = X[2*w + k];
     v->R_xx = cosine(X_2);
     v->R_yx = sine(X_2);
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
     v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
 }
@@ -1499,8 +1436,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
     const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
+    /* (rrr-Kd_1) */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
     const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
@@ -1509,7 +1445,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
+    /* (rrr-rho2_1) */
     v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
@@ -1520,10 +1456,10 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    /* (rrr-x_2) */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (rrr-c_2) */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     v->rrr_s_2_t =
@@ -1548,7 +1484,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rrr_axes2_x*m->gravity_y;
     v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
         v->axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
     v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
@@ -1570,7 +1506,7 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-S_dot) velocity of the connection point */
+    /* (rrr-S_dot) */
     const real omega_z = V[2*w + j];
     const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
     const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
@@ -1623,7 +1559,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-u_1) centripetal acceleration of the connection point */
+    /* (rrr-u_1) */
     const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
         v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
     const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
@@ -1674,11 +1610,10 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-w_2) reciprocal vector 2 */
+    /* (rrr-w_2) */
     const real rrr_w_2_in_axes2_x =
         v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
+    /* (rrr-d_Gamma_2) */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
     const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
@@ -1686,8 +1621,7 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        inertia and weight */
     const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
+    /* (rrr-d_c) */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
@@ -1713,24 +1647,22 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
     const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
-    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rrr-acc_2) */
     v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
         v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
-    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rrr-mu_1) */
     const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
         m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
@@ -1767,8 +1699,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_S_x = t_x - m->rrr_leg1_base_point_x[i] + v->rrr_leg1_q_x;
     const real t_y = X[1*w + j];
     const real rrr_leg1_S_y = t_y - m->rrr_leg1_base_point_y[i] + v->rrr_leg1_q_y;
-    /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-       beyond joint 1 */
+    /* (rrr_leg1-Kd_1) */
     const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
     const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] - m->rrr_leg1_Kd_1_t_2[i] +
         R(0.5)*rrr_leg1_Kd_1_t_3;
@@ -1780,7 +1711,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_Ks_1 =
         m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xy[i] +
         rrr_leg1_S_y*m->rrr_leg1_base_frame_yy[i]);
-    /* (rrr_leg1-rho2_1) squared amplitude */
+    /* (rrr_leg1-rho2_1) */
     v->rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
     /* (rrr_leg1-disc_1) discriminant */
     v->rrr_leg1_disc_1 = v->rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
@@ -1793,11 +1724,11 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
     v->rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kd_1*rrr_leg1_Ks_1 +
         rrr_leg1_Kc_1*rrr_leg1_root_1);
-    /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+    /* (rrr_leg1-x_2) */
     const real rrr_leg1_x_2_in_axes1_x =
         m->inv_rrr_leg1_size_t[i]*rrr_leg1_Kd_1*m->rrr_leg1_joint2_offset_x[i] -
         m->rrr_leg1_joint2_offset_x[i];
-    /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (rrr_leg1-c_2) */
     v->rrr_leg1_c_2 =
         m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_x_2_in_axes1_x;
     /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
@@ -1821,7 +1752,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     v->inv_rrr_leg1_r_1_in_axes2_y = 1/v->rrr_leg1_r_1_in_axes2_y;
     v->rrr_leg1_w_1_t = v->axis_x_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
     v->rrr_leg1_w_1_y = v->axis_y_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    /* (rrr_leg1-w_2) */
     v->rrr_leg1_w_2_in_axes2_x =
         v->inv_rrr_leg1_r_1_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
     v->rrr_leg1_w_2_x = v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
@@ -1833,8 +1764,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
         v->axis_y_rrr_leg1_axes2_x*m->gravity_y;
     v->rrr_leg1_g_in_axes2_y = v->axis_x_rrr_leg1_axes2_x*m->gravity_y +
         v->axis_y_rrr_leg1_axes2_x*m->gravity_x;
-    /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-       */
+    /* (rrr_leg1-mu_1) */
     v->rrr_leg1_g_in_axes1_x = v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v->rrr_leg1_s_1;
     v->rrr_leg1_g_in_axes1_y = v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
@@ -1862,7 +1792,7 @@ INLINE void stage_rrr_leg1_A_X(size_t w, size_t j, const real *A, values_rrr_leg
 INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr_leg1 *v)
 {
-    /* (rrr_leg1-S_dot) velocity of the connection point */
+    /* (rrr_leg1-S_dot) */
     const real omega_z = V[2*w + j];
     const real rrr_leg1_S_dot_t_3 = omega_z*v->rrr_leg1_q_y;
     const real rrr_leg1_S_dot_t_4 = omega_z*v->rrr_leg1_q_x;
@@ -1919,7 +1849,7 @@ INLINE void stage_rrr_leg1_A_V_X(const prepared *m, size_t i, values_rrr_leg1 *v
 
 INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
-    /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
+    /* (rrr_leg1-u_1) */
     const real rrr_leg1_u_1_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_u_1_x +
         v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_u_1_t;
     const real rrr_leg1_u_1_in_axes2_y = v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_u_1_x -
@@ -1972,14 +1902,13 @@ INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_le
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
     v->rrr_leg1_U_y = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->rrr_leg1_Z_a_t = v->rrr_leg1_U_y*v->rrr_leg1_q_x - v->rrr_leg1_U_x*v->rrr_leg1_q_y;
 }
 
 INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
-    /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
+    /* (rrr_leg1-d_Gamma_2) */
     const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
     const real rrr_leg1_d_Gamma_2_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
         v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_J_2_in_spec2_zz[i] -
@@ -1989,8 +1918,7 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
     const real rrr_leg1_d_Gamma_1_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
         v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_Jc_1_in_axes1_zz[i] -
         rrr_leg1_d_Gamma_2_t_2);
-    /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (rrr_leg1-d_c) */
     const real rrr_leg1_d_c_in_axes2_xy =
         v->inv_rrr_leg1_r_1_in_axes2_y*m->rrr_leg1_d_Gamma_2_in_axes2_y[i] -
         m->rrr_leg1_d_phi_2_in_axes2_xy[i] -
@@ -2012,11 +1940,11 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
         2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
     v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
         v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->rrr_leg1_M_ta_t = v->rrr_leg1_Q_xy*v->rrr_leg1_q_x - v->rrr_leg1_Q_xx*v->rrr_leg1_q_y;
     v->rrr_leg1_M_ta_t_2 = v->rrr_leg1_Q_yy*v->rrr_leg1_q_x -
         v->rrr_leg1_Q_xy*v->rrr_leg1_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->rrr_leg1_M_aa_t = v->rrr_leg1_M_ta_t_2*v->rrr_leg1_q_x -
         v->rrr_leg1_M_ta_t*v->rrr_leg1_q_y;
 }
@@ -2025,7 +1953,7 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
 {
     /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
     const real rrr_leg1_alpha_2_in_axes2_z = v->rrr_leg1_qdd_2 - v->rrr_leg1_qdd_1_t;
-    /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rrr_leg1-acc_2) */
     v->rrr_leg1_acc_2_in_axes2_x = v->rrr_leg1_S_ddot_in_axes2_x - v->rrr_leg1_g_in_axes2_x;
     v->rrr_leg1_acc_2_in_axes2_y = v->rrr_leg1_S_ddot_in_axes2_y - v->rrr_leg1_g_in_axes2_y;
     /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
@@ -2034,18 +1962,15 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
         v->rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
         v->rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
         m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z;
-    /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-       */
+    /* (rrr_leg1-mu_1) */
     const real rrr_leg1_mu_1_in_axes1_z = -v->rrr_leg1_mu_1_t_3 -
         m->rrr_leg1_J_1_in_spec1_zz[i]*v->rrr_leg1_qdd_1_t;
     /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
-    /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr_leg1-G) */
     const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
-    /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr_leg1-c) */
     v->rrr_leg1_c_in_axes2_x = v->rrr_leg1_c_t +
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] -
         v->inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
@@ -2095,10 +2020,10 @@ INLINE void any_sums_rrr_leg1(size_t k, size_t count, int add, const values_rrr_
     gather(&terms[0*count + k], add, v->rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rrr_leg1_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
@@ -2108,53 +2033,109 @@ INLINE void any_sums_rrr_leg1_2(size_t k, size_t count, int add, const values_rr
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v->rrr_leg1_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrr_leg1_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_rrr_leg1(size_t k, size_t count, const values_rrr_leg1 *v, real *o)
 {
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    /* (rrr_leg1-w_1) */
     o[0*count + k] = -v->rrr_leg1_w_1_t;
     o[1*count + k] = v->rrr_leg1_w_1_y;
-    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrr_leg1-H_a_1) */
     o[2*count + k] = v->rrr_leg1_H_a_1_z;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    /* (rrr_leg1-w_2) */
     o[3*count + k] = v->rrr_leg1_w_2_x;
     o[4*count + k] = v->rrr_leg1_w_2_y;
-    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+    /* (rrr_leg1-H_a_2) */
     o[5*count + k] = v->rrr_leg1_H_a_2_z;
 }
 
 INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
 {
-    /* (M_tt) translational block of M */
+    /* (M_tt) */
     gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
     gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
 }
 
 INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
 }
 
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    /* (rrr-H_a_1) */
     o[2*count + k] = v->rrr_H_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void any_place_rrr_leg1_2(size_t k, size_t at, size_t count, const real *o, status_flags
@@ -2179,7 +2160,7 @@ INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *
 {
     stage_V(w, k, V, v);
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = v->f_p_t - m->Z_p_t;
     const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
@@ -2228,59 +2209,15 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[4*w + k];
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[5*w + k];
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-        + (Z_t_y + Z_a_z)));
+    any_after(m, w, k, s + 2*w, sums, M, t);
+    any_after_2(w, k, s + 4*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)7)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rrr_leg1[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
@@ -2382,41 +2319,13 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) rotational block of M */
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    /* (M_ta) */
-    M[2*w + k] = M_ta_xz;
-    M[2*NV*w + k] = M_ta_xz;
-    M[(NV + 2)*w + k] = M_ta_yz;
-    M[(2*NV + 1)*w + k] = M_ta_yz;
-    /* (M_aa) */
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+    any_after(m, w, k, s + 2*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)4)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rrr_leg1[SUMS_OF_M*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
@@ -2449,7 +2358,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2492,10 +2401,10 @@ INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, valu
 {
     stage_V(w, k, V, v);
     stage_V_X(v);
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real Z_p_x = v->f_p_t - m->Z_p_t;
     const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    /* (Z_q) */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
@@ -2531,23 +2440,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[2*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[3*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    /* (Z_a) */
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
+    any_after_2(w, k, s + 2*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)5)
@@ -2587,7 +2480,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2655,7 +2548,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)2)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
@@ -2722,7 +2615,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_x = t_ddot_x - m->gravity_x;
     const real t_ddot_y = A[1*w + k];
     const real a_t_y = t_ddot_y - m->gravity_y;
-    /* (f_p) inertia force of the platform less its weight */
+    /* (f_p) */
     const real alpha_z = A[2*w + k];
     const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x + v->f_p_t_2;
@@ -2743,15 +2636,14 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     stage_rrr_leg1_A_V_X(m, i, &v);
     stage_rrr_leg1_legs_required(m, i, &v);
-    /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr_leg1-c) */
     const real rrr_leg1_c_x = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y +
         v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rrr_leg1_R_a_t = rrr_leg1_c_x*v.rrr_leg1_q_y - rrr_leg1_c_y*v.rrr_leg1_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rrr_leg1_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_leg1_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
@@ -2786,8 +2678,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
-    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rrr-c) */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
         v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
@@ -2817,14 +2708,14 @@ INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[2*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[3*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2879,8 +2770,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrr_leg1[8*LANES];
@@ -2978,7 +2869,8 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
 
 #define PASSED_IN_inverse_kinematics ((size_t)2)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
@@ -3041,9 +2933,9 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-    /* (rrr_leg1-qd_1) rate of joint 1 */
+    /* (rrr_leg1-qd_1) */
     o[0*count + k] = -v.rrr_leg1_qd_1_t;
-    /* (rrr_leg1-qd_2) rate of joint 2 */
+    /* (rrr_leg1-qd_2) */
     o[1*count + k] = v.rrr_leg1_qd_2;
     o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
@@ -3068,9 +2960,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-qd_1) */
     o[0*count + k] = -v.rrr_qd_1_t;
-    /* (rrr-qd_2) rate of joint 2 */
+    /* (rrr-qd_2) */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3090,8 +2982,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
 
 #define PASSED_IN_joint_rates ((size_t)2)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
@@ -3156,9 +3048,9 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
     stage_rrr_leg1_A_X(w, j, A, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     stage_rrr_leg1_A_V_X(m, i, &v);
-    /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+    /* (rrr_leg1-qdd_1) */
     o[0*count + k] = -v.rrr_leg1_qdd_1_t;
-    /* (rrr_leg1-qdd_2) acceleration of joint 2 */
+    /* (rrr_leg1-qdd_2) */
     o[1*count + k] = v.rrr_leg1_qdd_2;
     o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
@@ -3185,9 +3077,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(m, i, &v);
-    /* (rrr-qdd_1) acceleration of joint 1 */
+    /* (rrr-qdd_1) */
     o[0*count + k] = -v.rrr_qdd_1_t;
-    /* (rrr-qdd_2) acceleration of joint 2 */
+    /* (rrr-qdd_2) */
     o[1*count + k] = v.rrr_qdd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3207,8 +3099,8 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 
 #define PASSED_IN_joint_accelerations ((size_t)2)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
@@ -3286,10 +3178,10 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr_leg1-c_true) */
     o[0*count + k] = rrr_leg1_c_true_x;
     o[1*count + k] = rrr_leg1_c_true_y;
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    /* (rrr_leg1-w_1) */
     o[2*count + k] = -v.rrr_leg1_w_1_t;
     o[3*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    /* (rrr_leg1-w_2) */
     o[4*count + k] = v.rrr_leg1_w_2_x;
     o[5*count + k] = v.rrr_leg1_w_2_y;
     o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
@@ -3332,7 +3224,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-c_true) */
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
-    /* (rrr-w_1) reciprocal vector 1 */
+    /* (rrr-w_1) */
     o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
@@ -3388,7 +3280,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
@@ -3498,7 +3390,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -3508,14 +3400,13 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-    /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr_leg1-G) */
     const real rrr_leg1_pivot_size = magnitude(v.rrr_leg1_rho2_1);
     const real rrr_leg1_pivot_size_2 = magnitude(v.rrr_leg1_r_1_in_axes2_y);
     const real rrr_leg1_least_pivots =
         lesser(root(m->inv_rrr_leg1_rho2_1_t[i]*rrr_leg1_pivot_size),
         m->inv_rrr_leg1_size[i]*rrr_leg1_pivot_size_2);
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real rrr_leg1_spread_t = m->b_c_in_platform_x - m->rrr_leg1_platform_point_x[i];
     const real rrr_leg1_spread_t_2 = m->b_c_in_platform_y - m->rrr_leg1_platform_point_y[i];
     const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
@@ -3556,8 +3447,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rrr-G) */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
     const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
     const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
@@ -3594,7 +3484,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rrr = sums[1*w + k];
     const real spread_rrr_leg1 = sums[0*w + k];
     const real spread_ = root(R(0.5)*spread_rrr + R(0.5)*spread_rrr_leg1);
@@ -3606,8 +3496,8 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 #define PASSED_IN_condition ((size_t)2)
 #define SUMS_OF_condition ((size_t)2)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rrr_leg1[SUMS_OF_condition*LEGS(LEGS_OF_rrr_leg1)] = {0},
@@ -3642,7 +3532,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int sixbar_M(const prepared *m, const real *X, real *M_out)
+NARROW int sixbar_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3665,7 +3555,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int sixbar_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int sixbar_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3689,7 +3579,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int sixbar_H(const prepared *m, const real *X, real *H_out)
+NARROW int sixbar_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3712,7 +3602,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int sixbar_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int sixbar_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3735,7 +3625,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int sixbar_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int sixbar_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3760,8 +3650,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int sixbar_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd_out)
+NARROW int sixbar_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3787,8 +3677,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int sixbar_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out,
-    real *H_out)
+NARROW int sixbar_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3870,8 +3760,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1, 2};
 static const real sizes_tau[] = {1.0, 4.0, 0.25};
 
-int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
-    real *wrench, real *tau_out)
+NARROW int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -3920,8 +3810,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {4.0, 4.0, 0.0625};
 
-int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out)
+NARROW int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -3977,8 +3867,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int sixbar_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *completed_out)
+NARROW int sixbar_complete_acceleration(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -3991,8 +3881,8 @@ int sixbar_complete_acceleration(const prepared *m, const real *X, const real *V
     return finished(NV, completed, completed_out, &why);
 }
 
-int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
-    real *wrench, real *forces_out)
+NARROW int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1};
@@ -4010,7 +3900,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
     return finished(NL*NV, forces, forces_out, &why);
 }
 
-int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+NARROW int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
@@ -4029,7 +3919,7 @@ int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic
     return final_status(&why, 1, potential_out);
 }
 
-int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4062,7 +3952,8 @@ int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *le
     return final_status(&why, NL, legs_out);
 }
 
-int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
+NARROW int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -4095,7 +3986,7 @@ int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, r
     return final_status(&why, 1, isotropy_out);
 }
 
-int sixbar_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+NARROW int sixbar_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
@@ -4129,7 +4020,7 @@ int sixbar_singularity_distance(const prepared *m, const real *X, real *actuator
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, subtract_1[NU] CLEARED, residual[NU] CLEARED;
@@ -4147,7 +4038,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4204,8 +4095,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int sixbar_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int sixbar_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4215,7 +4106,8 @@ int sixbar_forward_kinematics(const prepared *m, const real *q_actuated, const r
     return finished(NQ, X, X_out, &why);
 }
 
-int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
+NARROW int sixbar_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
     (void)m;
     (void)X;
@@ -4230,7 +4122,7 @@ int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *di
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4241,7 +4133,7 @@ int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momen
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4257,7 +4149,7 @@ int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
     return final_status(&why, NJ, margins_out);
 }
 
-int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4271,7 +4163,7 @@ int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
     return finished(1, within, within_out, &why);
 }
 
-int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED;
     status_flags why;
@@ -4282,7 +4174,7 @@ int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
     return finished(NU, q, q_out, &why);
 }
 
-int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED;
     status_flags why;
@@ -4293,8 +4185,8 @@ int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real 
     return finished(NU, qd, qd_out, &why);
 }
 
-int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd_out)
+NARROW int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED;
     status_flags why;
@@ -4305,7 +4197,7 @@ int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int sixbar_power(const prepared *m, const real *X, const real *V, const real *tau, real
+NARROW int sixbar_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
@@ -4318,7 +4210,7 @@ int sixbar_power(const prepared *m, const real *X, const real *V, const real *ta
     return finished(1, power, power_out, &why);
 }
 
-int sixbar_rotation(const real *X, real *R_out)
+NARROW int sixbar_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     status_flags why;
@@ -4329,19 +4221,18 @@ int sixbar_rotation(const real *X, real *R_out)
     return finished(4, R, R_out, &why);
 }
 
-int sixbar_pose(const real *t, const real *R, real *X_out)
+NARROW int sixbar_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
+    real angle_of_rotation_1[1] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 2, 1, t, angle_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     status_flags why;
     start(1, &why);
@@ -4350,7 +4241,7 @@ int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int sixbar_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int sixbar_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -4362,7 +4253,7 @@ int sixbar_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int sixbar_difference(const real *X0, const real *X1, real *step_out)
+NARROW int sixbar_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] CLEARED, step[NV] CLEARED;
@@ -4379,7 +4270,7 @@ int sixbar_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

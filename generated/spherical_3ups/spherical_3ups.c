@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && SPHERICAL_3UPS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && SPHERICAL_3UPS_LANES >= 4 && VECTORS_OF(SPHERICAL_3UPS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +293,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +308,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +414,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -591,8 +608,9 @@ static int acceptable(const spherical_3ups_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_model *model)
 {
@@ -613,12 +631,12 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     real b_c_ups_in_platform_x = 0;
     real b_c_ups_in_platform_y = 0;
     real b_c_ups_in_platform_z = 0;
-    const real fixed_centre_x = params->fixed_centre[0];
-    const real fixed_centre_y = params->fixed_centre[1];
-    const real fixed_centre_z = params->fixed_centre[2];
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(fixed_centre_x, params->fixed_centre[0]);
+    KEEP(fixed_centre_y, params->fixed_centre[1]);
+    KEEP(fixed_centre_z, params->fixed_centre[2]);
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -645,35 +663,27 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.385640646055102)*spread_t;
-    KEEP(fixed_centre_x);
-    KEEP(fixed_centre_y);
-    KEEP(fixed_centre_z);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(legs_size);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.385640646055102)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
-        const real ups_base_point_x = params->ups_base_point[own][0];
-        const real ups_base_point_y = params->ups_base_point[own][1];
-        const real ups_base_point_z = params->ups_base_point[own][2];
-        const real ups_base_frame_xx = params->ups_base_frame[own][0][0];
-        const real ups_base_frame_xy = params->ups_base_frame[own][0][1];
-        const real ups_base_frame_xz = params->ups_base_frame[own][0][2];
-        const real ups_base_frame_yx = params->ups_base_frame[own][1][0];
-        const real ups_base_frame_yy = params->ups_base_frame[own][1][1];
-        const real ups_base_frame_yz = params->ups_base_frame[own][1][2];
-        const real ups_base_frame_zx = params->ups_base_frame[own][2][0];
-        const real ups_base_frame_zy = params->ups_base_frame[own][2][1];
-        const real ups_base_frame_zz = params->ups_base_frame[own][2][2];
-        const real ups_platform_point_x = params->ups_platform_point[own][0];
-        const real ups_platform_point_y = params->ups_platform_point[own][1];
-        const real ups_platform_point_z = params->ups_platform_point[own][2];
-        const real ups_link2_mass = params->ups_link2_mass[own];
+        KEEP_OF_LEG(ups_base_point_x, params->ups_base_point[own][0]);
+        KEEP_OF_LEG(ups_base_point_y, params->ups_base_point[own][1]);
+        KEEP_OF_LEG(ups_base_point_z, params->ups_base_point[own][2]);
+        KEEP_OF_LEG(ups_base_frame_xx, params->ups_base_frame[own][0][0]);
+        KEEP_OF_LEG(ups_base_frame_xy, params->ups_base_frame[own][0][1]);
+        KEEP_OF_LEG(ups_base_frame_xz, params->ups_base_frame[own][0][2]);
+        KEEP_OF_LEG(ups_base_frame_yx, params->ups_base_frame[own][1][0]);
+        KEEP_OF_LEG(ups_base_frame_yy, params->ups_base_frame[own][1][1]);
+        KEEP_OF_LEG(ups_base_frame_yz, params->ups_base_frame[own][1][2]);
+        KEEP_OF_LEG(ups_base_frame_zx, params->ups_base_frame[own][2][0]);
+        KEEP_OF_LEG(ups_base_frame_zy, params->ups_base_frame[own][2][1]);
+        KEEP_OF_LEG(ups_base_frame_zz, params->ups_base_frame[own][2][2]);
+        KEEP_OF_LEG(ups_platform_point_x, params->ups_platform_point[own][0]);
+        KEEP_OF_LEG(ups_platform_point_y, params->ups_platform_point[own][1]);
+        KEEP_OF_LEG(ups_platform_point_z, params->ups_platform_point[own][2]);
+        KEEP_OF_LEG(ups_link2_mass, params->ups_link2_mass[own]);
         const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[own][0];
         const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[own][1];
         const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[own][2];
@@ -683,7 +693,7 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         const real ups_link2_inertia_yy = params->ups_link2_inertia[own][1][1];
         const real ups_link2_inertia_yz = params->ups_link2_inertia[own][1][2];
         const real ups_link2_inertia_zz = params->ups_link2_inertia[own][2][2];
-        const real ups_link3_mass = params->ups_link3_mass[own];
+        KEEP_OF_LEG(ups_link3_mass, params->ups_link3_mass[own]);
         const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[own][0];
         const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[own][1];
         const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[own][2];
@@ -694,17 +704,17 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         const real ups_link3_inertia_yz = params->ups_link3_inertia[own][1][2];
         const real ups_link3_inertia_zz = params->ups_link3_inertia[own][2][2];
         static const signed char signs_ups_branch_1[] = {1, 1, 1};
-        const real ups_branch_1 = signs_ups_branch_1[own];
+        KEEP_OF_LEG(ups_branch_1, signs_ups_branch_1[own]);
         static const signed char signs_ups_branch_2[] = {1, 1, 1};
-        const real ups_branch_2 = signs_ups_branch_2[own];
+        KEEP_OF_LEG(ups_branch_2, signs_ups_branch_2[own]);
         /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
+        KEEP_OF_LEG(ups_h_2_in_spec2_x, ups_link2_centre_of_mass_x*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y, ups_link2_centre_of_mass_y*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z, ups_link2_centre_of_mass_z*ups_link2_mass);
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        KEEP_OF_LEG(ups_h_3_in_spec2_x, ups_link3_centre_of_mass_x*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y, ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z, ups_link3_centre_of_mass_z*ups_link3_mass);
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -714,37 +724,37 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
         const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
         const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
-        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx, ups_link2_inertia_xx + ups_link3_inertia_xx -
             ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_xy =
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy,
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+            ups_link2_inertia_xz - ups_link3_inertia_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz, ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
-            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy, ups_link2_inertia_zz + ups_link3_inertia_zz -
             ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_yz =
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz,
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_inertia_yz - ups_link3_inertia_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz, ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8));
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
             ups_J_group_2_in_axes2_zz;
         const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
-        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz);
         /* (ups-h_group_2) first moments of the links that turn with link 2 */
-        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
-        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
-        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x, ups_h_2_in_spec2_x + ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y, -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z, ups_h_2_in_spec2_y + ups_h_3_in_spec2_y);
         /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -761,126 +771,66 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
         const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
         /* (potential) potential energy */
-        const real ups_potential_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_potential_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_potential_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
-        const real ups_potential_t_4 = ups_base_frame_xx*ups_base_point_x +
-            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_potential_t_5 = ups_base_frame_xy*ups_base_point_x +
-            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_potential_t_6 = ups_base_frame_xz*ups_base_point_x +
-            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_base_frame_xx);
-        KEEP_OF_LEG(ups_base_frame_xy);
-        KEEP_OF_LEG(ups_base_frame_xz);
-        KEEP_OF_LEG(ups_base_frame_yx);
-        KEEP_OF_LEG(ups_base_frame_yy);
-        KEEP_OF_LEG(ups_base_frame_yz);
-        KEEP_OF_LEG(ups_base_frame_zx);
-        KEEP_OF_LEG(ups_base_frame_zy);
-        KEEP_OF_LEG(ups_base_frame_zz);
-        KEEP_OF_LEG(ups_base_point_x);
-        KEEP_OF_LEG(ups_base_point_y);
-        KEEP_OF_LEG(ups_base_point_z);
-        KEEP_OF_LEG(ups_branch_1);
-        KEEP_OF_LEG(ups_branch_2);
-        KEEP_OF_LEG(ups_h_2_in_spec2_x);
-        KEEP_OF_LEG(ups_h_2_in_spec2_y);
-        KEEP_OF_LEG(ups_h_2_in_spec2_z);
-        KEEP_OF_LEG(ups_h_3_in_spec2_x);
-        KEEP_OF_LEG(ups_h_3_in_spec2_y);
-        KEEP_OF_LEG(ups_h_3_in_spec2_z);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
-        KEEP_OF_LEG(ups_link2_mass);
-        KEEP_OF_LEG(ups_link3_mass);
-        KEEP_OF_LEG(ups_platform_point_x);
-        KEEP_OF_LEG(ups_platform_point_y);
-        KEEP_OF_LEG(ups_platform_point_z);
-        KEEP_OF_LEG(ups_potential_t);
-        KEEP_OF_LEG(ups_potential_t_2);
-        KEEP_OF_LEG(ups_potential_t_3);
-        KEEP_OF_LEG(ups_potential_t_4);
-        KEEP_OF_LEG(ups_potential_t_5);
-        KEEP_OF_LEG(ups_potential_t_6);
-        m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_10 : 0;
-        b_c_ups_in_platform_x += leg < LEGS_OF_ups ? ups_platform_point_x : 0;
-        b_c_ups_in_platform_y += leg < LEGS_OF_ups ? ups_platform_point_y : 0;
-        b_c_ups_in_platform_z += leg < LEGS_OF_ups ? ups_platform_point_z : 0;
+        KEEP_OF_LEG(ups_potential_t, gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx);
+        KEEP_OF_LEG(ups_potential_t_2, gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy);
+        KEEP_OF_LEG(ups_potential_t_3, gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz);
+        KEEP_OF_LEG(ups_potential_t_4, ups_base_frame_xx*ups_base_point_x +
+            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_5, ups_base_frame_xy*ups_base_point_x +
+            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_6, ups_base_frame_xz*ups_base_point_x +
+            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z);
+        if (leg < LEGS_OF_ups) {
+            m_star_of_legs += ups_link3_mass;
+            h_star_in_platform_x_of_legs += ups_h_star_t;
+            h_star_in_platform_y_of_legs += ups_h_star_t_2;
+            h_star_in_platform_z_of_legs += ups_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -ups_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -ups_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -ups_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -ups_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -ups_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -ups_J_star_t_10;
+            b_c_ups_in_platform_x += ups_platform_point_x;
+            b_c_ups_in_platform_y += ups_platform_point_y;
+            b_c_ups_in_platform_z += ups_platform_point_z;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (potential) */
-    const real potential_t = fixed_centre_x*m_star;
-    const real potential_t_2 = fixed_centre_y*m_star;
-    const real potential_t_3 = fixed_centre_z*m_star;
+    KEEP(potential_t, fixed_centre_x*m_star);
+    KEEP(potential_t_2, fixed_centre_y*m_star);
+    KEEP(potential_t_3, fixed_centre_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_ups_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_ups_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_ups_in_platform_z;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(potential_t);
-    KEEP(potential_t_2);
-    KEEP(potential_t_3);
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_ups_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_ups_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_ups_in_platform_z);
     return OK;
 }
 
@@ -1481,7 +1431,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1647,7 +1597,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
 INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_ups *v)
 {
-    /* (ups-S_dot) velocity of the connection point */
+    /* (ups-S_dot) */
     const real omega_y = V[1*w + j];
     const real omega_z = V[2*w + j];
     v->ups_S_dot_x = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
@@ -1656,10 +1606,10 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_S_dot_z = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
     v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_dot_x +
         v->axis_x_ups_axes2_y*v->ups_S_dot_y + v->axis_x_ups_axes2_z*v->ups_S_dot_z;
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*v->ups_S_dot_x +
         v->axis_z_ups_axes2_y*v->ups_S_dot_y + v->axis_z_ups_axes2_z*v->ups_S_dot_z);
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*v->ups_S_dot_x +
         v->axis_y_ups_axes2_y*v->ups_S_dot_y + v->axis_y_ups_axes2_z*v->ups_S_dot_z);
     /* (ups-omega_1) angular velocity of link 1 */
@@ -1680,7 +1630,7 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
     v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
     v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
@@ -1717,7 +1667,7 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *s, values_ups *v)
     const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
     /* (ups-qdd_1) acceleration of joint 1 */
     v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
         - v->ups_qdd_2_t);
     v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
@@ -1877,7 +1827,7 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
 
 INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
-    /* (ups-S_ddot) acceleration of the connection point */
+    /* (ups-S_ddot) */
     v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
     /* (ups-alpha_1) angular acceleration of link 1 */
     const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
@@ -1889,10 +1839,10 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    /* (ups-phi_3) */
     v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
         - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 -
         v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] - v->ups_mu_2_t_5 -
         v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
@@ -1912,8 +1862,7 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
         ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
         m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
     v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
@@ -1956,7 +1905,7 @@ INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
 
 INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, real *terms)
 {
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[0*count + k], add, v->ups_M_aa_t_6);  /* M_aa_xx_of_legs */
     gather(&terms[1*count + k], add, v->ups_M_aa_t_7);  /* M_aa_xy_of_legs */
     gather(&terms[2*count + k], add, v->ups_M_aa_t_8);  /* M_aa_xz_of_legs */
@@ -1967,7 +1916,7 @@ INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, r
 
 INLINE void any_sums_ups_2(size_t k, size_t count, int add, const values_ups *v, real *terms)
 {
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[0*count + k], add, v->ups_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[1*count + k], add, v->ups_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[2*count + k], add, v->ups_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -1975,7 +1924,7 @@ INLINE void any_sums_ups_2(size_t k, size_t count, int add, const values_ups *v,
 
 INLINE void any_entries_ups(size_t k, size_t count, const values_ups *v, real *o)
 {
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    /* (ups-H_a_3) */
     o[0*count + k] = v->ups_H_a_3_x;
     o[1*count + k] = v->ups_H_a_3_y;
     o[2*count + k] = v->ups_H_a_3_z;
@@ -1986,6 +1935,61 @@ INLINE void any_singular_ups(size_t k, const values_ups *v, real *o)
     o[k] = UNLESS(magnitude(v->ups_root_1_t_4) > LEAST_1) + UNLESS(magnitude(v->ups_q_3_t_2) >
         LEAST_1) + UNLESS(magnitude(v->ups_root_1) > LEAST_2) + UNLESS(magnitude(v->ups_q_3) >
         LEAST_2);
+}
+
+INLINE void any_after(size_t w, size_t k, const real *s, const real *sums, real *M, status_flags
+    *t)
+{
+    /* (M_aa) */
+    const real J_star_xx = s[0*w + k];
+    const real M_aa_xx_of_legs = sums[0*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[3*w + k];
+    const real M_aa_xy_of_legs = sums[1*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[4*w + k];
+    const real M_aa_xz_of_legs = sums[2*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[1*w + k];
+    const real M_aa_yy_of_legs = sums[3*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[5*w + k];
+    const real M_aa_yz_of_legs = sums[4*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[2*w + k];
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_aa) */
+    M[0*w + k] = M_aa_xx;
+    M[1*w + k] = M_aa_xy;
+    M[NV*w + k] = M_aa_xy;
+    M[2*w + k] = M_aa_xz;
+    M[2*NV*w + k] = M_aa_xz;
+    M[(NV + 1)*w + k] = M_aa_yy;
+    M[(NV + 2)*w + k] = M_aa_yz;
+    M[(2*NV + 1)*w + k] = M_aa_yz;
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz + M_aa_zz));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[0*w + k];
+    const real Z_q_x = s[0*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[1*w + k];
+    const real Z_q_y = s[1*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[2*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_a) */
+    Z[0*w + k] = Z_a_x;
+    Z[1*w + k] = Z_a_y;
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_a_x + (Z_a_y + Z_a_z);
 }
 
 INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2065,58 +2069,15 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(size_t w, size_t k, const real *s, const real *sums, real *M, real *Z,
     status_flags *t)
 {
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[18*w + k];
-    const real M_aa_xx_of_legs = sums[0*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[21*w + k];
-    const real M_aa_xy_of_legs = sums[1*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[22*w + k];
-    const real M_aa_xz_of_legs = sums[2*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[19*w + k];
-    const real M_aa_yy_of_legs = sums[3*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[23*w + k];
-    const real M_aa_yz_of_legs = sums[4*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[20*w + k];
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[6*w + k];
-    const real Z_q_x = s[24*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[7*w + k];
-    const real Z_q_y = s[25*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[26*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_aa) */
-    M[0*w + k] = M_aa_xx;
-    M[1*w + k] = M_aa_xy;
-    M[NV*w + k] = M_aa_xy;
-    M[2*w + k] = M_aa_xz;
-    M[2*NV*w + k] = M_aa_xz;
-    M[(NV + 1)*w + k] = M_aa_yy;
-    M[(NV + 2)*w + k] = M_aa_yz;
-    M[(2*NV + 1)*w + k] = M_aa_yz;
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    /* (Z_a) */
-    Z[0*w + k] = Z_a_x;
-    Z[1*w + k] = Z_a_y;
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += ((M_aa_xx + M_aa_xy) + (M_aa_xz + M_aa_yy)) + ((M_aa_yz + M_aa_zz) + (Z_a_x
-        + (Z_a_y + Z_a_z)));
+    any_after(w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 24*w, sums + 6*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)27)
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -2177,42 +2138,13 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void M_after(size_t w, size_t k, const real *s, const real *sums, real *M, status_flags *t)
 {
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[18*w + k];
-    const real M_aa_xx_of_legs = sums[0*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[21*w + k];
-    const real M_aa_xy_of_legs = sums[1*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[22*w + k];
-    const real M_aa_xz_of_legs = sums[2*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[19*w + k];
-    const real M_aa_yy_of_legs = sums[3*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[23*w + k];
-    const real M_aa_yz_of_legs = sums[4*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[20*w + k];
-    const real M_aa_zz_of_legs = sums[5*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_aa) */
-    M[0*w + k] = M_aa_xx;
-    M[1*w + k] = M_aa_xy;
-    M[NV*w + k] = M_aa_xy;
-    M[2*w + k] = M_aa_xz;
-    M[2*NV*w + k] = M_aa_xz;
-    M[(NV + 1)*w + k] = M_aa_yy;
-    M[(NV + 2)*w + k] = M_aa_yz;
-    M[(2*NV + 1)*w + k] = M_aa_yz;
-    M[(2*NV + 2)*w + k] = M_aa_zz;
-    t->total[k] += (M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz + M_aa_zz));
+    any_after(w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)24)
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
@@ -2231,7 +2163,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2280,21 +2212,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[0*w + k];
-    const real Z_q_x = s[18*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[1*w + k];
-    const real Z_q_y = s[19*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[20*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_a) */
-    Z[0*w + k] = Z_a_x;
-    Z[1*w + k] = Z_a_y;
-    Z[2*w + k] = Z_a_z;
-    t->total[k] += Z_a_x + (Z_a_y + Z_a_z);
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)21)
@@ -2320,7 +2238,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2362,7 +2280,7 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -2403,7 +2321,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    /* (mu_p) inertia moment of the platform less that of its weight */
+    /* (mu_p) */
     const real omega_x = V[0*w + k];
     const real omega_y = V[1*w + k];
     const real omega_z = V[2*w + k];
@@ -2456,15 +2374,14 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
     const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
     const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
@@ -2487,7 +2404,7 @@ INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[0*w + k];
     const real mu_p_x = s[18*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2530,8 +2447,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[4*LANES];
@@ -2564,21 +2481,21 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-q_1) displacement of joint 1 */
+    /* (ups-q_1) */
     const real ups_q_1 = angle(v.inv_ups_root_1*ups_S_in_turn1_y,
         v.inv_ups_root_1*ups_S_in_turn1_x);
-    /* (ups-q_2) displacement of joint 2 */
+    /* (ups-q_2) */
     const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
     o[1*count + k] = ups_q_2;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     o[2*count + k] = v.ups_q_3;
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1);
@@ -2597,7 +2514,8 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -2641,9 +2559,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
     values_ups v;
     stage_ups_X(m, w, i, j, s, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     o[0*count + k] = v.ups_qd_1;
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
@@ -2663,8 +2581,8 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -2709,11 +2627,11 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     stage_ups_X(m, w, i, j, s, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, &v);
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    /* (ups-rel) */
     const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
-    /* (ups-qdd_1) acceleration of joint 1 */
+    /* (ups-qdd_1) */
     o[0*count + k] = v.ups_qdd_1;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
@@ -2733,8 +2651,8 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -2780,7 +2698,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (ups-acc_3) */
     const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
     const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
     const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
@@ -2846,7 +2764,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 /* ---- potential ---- */
 INLINE void potential_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real potential_t_4 = m->gravity_x*(m->potential_t + v->R_xy*m->h_star_in_platform_y
         + v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
         m->gravity_y*(m->potential_t_2 + v->R_yx*m->h_star_in_platform_x +
@@ -2861,12 +2779,12 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    /* (ups-root_1) */
     const real ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
     const real ups_root_1_2 = m->ups_branch_1[i]*root(ups_root_1_t_5);
@@ -2875,10 +2793,10 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     const real ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x;
     /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
     const real ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     const real ups_q_3_t_3 = v.ups_q_3_t + ups_root_1_t_5;
     const real ups_q_3_2 = m->ups_branch_2[i]*root(ups_q_3_t_3);
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (ups-c_2) */
     const real inv_ups_q_3_2 = 1/ups_q_3_2;
     const real ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2;
     /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
@@ -2953,7 +2871,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3001,7 +2919,7 @@ INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_ups = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_ups);
     /* (spread) */
@@ -3012,8 +2930,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
@@ -3035,7 +2953,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int spherical_3ups_M(const prepared *m, const real *X, real *M_out)
+NARROW int spherical_3ups_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3058,7 +2976,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int spherical_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int spherical_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3082,7 +3000,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int spherical_3ups_H(const prepared *m, const real *X, real *H_out)
+NARROW int spherical_3ups_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3105,7 +3023,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int spherical_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int spherical_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3128,7 +3046,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int spherical_3ups_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int spherical_3ups_joint_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3153,8 +3072,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int spherical_3ups_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int spherical_3ups_joint_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3180,8 +3099,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int spherical_3ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out)
+NARROW int spherical_3ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3263,8 +3182,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {1, 0, 2};
 static const real sizes_tau[] = {0.25, 0.25, 0.25};
 
-int spherical_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau_out)
+NARROW int spherical_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -3313,8 +3232,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {1.0, 1.0, 1.0};
 
-int spherical_3ups_forward_dynamics(const prepared *m, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A_out)
+NARROW int spherical_3ups_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -3370,8 +3289,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int spherical_3ups_complete_acceleration(const prepared *m, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed_out)
+NARROW int spherical_3ups_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -3384,8 +3303,8 @@ int spherical_3ups_complete_acceleration(const prepared *m, const real *X, const
     return finished(NV, completed, completed_out, &why);
 }
 
-int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
@@ -3403,8 +3322,8 @@ int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real
+    *kinetic_out, real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -3422,7 +3341,8 @@ int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real 
     return final_status(&why, 1, potential_out);
 }
 
-int spherical_3ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int spherical_3ups_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -3455,7 +3375,7 @@ int spherical_3ups_condition(const prepared *m, const real *X, real *sigma_out, 
     return final_status(&why, NL, legs_out);
 }
 
-int spherical_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int spherical_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {0, 1, 2};
@@ -3489,8 +3409,8 @@ int spherical_3ups_manipulability(const prepared *m, const real *X, real *measur
     return final_status(&why, 1, isotropy_out);
 }
 
-int spherical_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out,
-    real *legs_out)
+NARROW int spherical_3ups_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {0, 1, 2};
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
@@ -3523,7 +3443,7 @@ int spherical_3ups_singularity_distance(const prepared *m, const real *X, real *
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] CLEARED;
@@ -3538,7 +3458,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -3595,8 +3515,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int spherical_3ups_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
-    real *X_out)
+NARROW int spherical_3ups_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -3606,7 +3526,7 @@ int spherical_3ups_forward_kinematics(const prepared *m, const real *q_actuated,
     return finished(NQ, X, X_out, &why);
 }
 
-int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -3622,7 +3542,8 @@ int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, 
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -3633,7 +3554,7 @@ int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, rea
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -3649,7 +3570,7 @@ int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins
     return final_status(&why, NJ, margins_out);
 }
 
-int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -3663,7 +3584,7 @@ int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_
     return finished(1, within, within_out, &why);
 }
 
-int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -3674,7 +3595,8 @@ int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_
     return finished(NU, q, q_out, &why);
 }
 
-int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3685,8 +3607,8 @@ int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *
     return finished(NU, qd, qd_out, &why);
 }
 
-int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out)
+NARROW int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3697,8 +3619,8 @@ int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, cons
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int spherical_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int spherical_3ups_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -3710,7 +3632,7 @@ int spherical_3ups_power(const prepared *m, const real *X, const real *V, const 
     return finished(1, power, power_out, &why);
 }
 
-int spherical_3ups_rotation(const real *X, real *R_out)
+NARROW int spherical_3ups_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -3720,19 +3642,18 @@ int spherical_3ups_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int spherical_3ups_pose(const real *t, const real *R, real *X_out)
+NARROW int spherical_3ups_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[4] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_one(9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 0, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 0, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int spherical_3ups_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int spherical_3ups_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real X_dot[NQ] = {0};
     status_flags why;
@@ -3742,19 +3663,18 @@ int spherical_3ups_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int spherical_3ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int spherical_3ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[4] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_one(3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 0, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 0, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int spherical_3ups_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int spherical_3ups_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
     status_flags why;
@@ -3764,7 +3684,7 @@ int spherical_3ups_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int spherical_3ups_difference(const real *X0, const real *X1, real *step_out)
+NARROW int spherical_3ups_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
     status_flags why;
@@ -3774,7 +3694,7 @@ int spherical_3ups_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int spherical_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int spherical_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, scale_1[3] CLEARED, X[NQ] = {0};
     status_flags why;

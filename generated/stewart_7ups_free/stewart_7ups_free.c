@@ -53,10 +53,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && STEWART_7UPS_FREE_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && STEWART_7UPS_FREE_LANES >= 4 && VECTORS_OF(STEWART_7UPS_FREE_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +72,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -277,11 +287,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -290,10 +302,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -395,11 +408,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -661,8 +671,9 @@ static int acceptable(const stewart_7ups_free_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7ups_free_model *model)
 {
@@ -686,9 +697,9 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
     real b_c_ups_leg7_in_platform_x = 0;
     real b_c_ups_leg7_in_platform_y = 0;
     real b_c_ups_leg7_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -714,27 +725,24 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
-        const real ups_base_point_x = params->ups_base_point[own][0];
-        const real ups_base_point_y = params->ups_base_point[own][1];
-        const real ups_base_point_z = params->ups_base_point[own][2];
-        const real ups_base_frame_xx = params->ups_base_frame[own][0][0];
-        const real ups_base_frame_xy = params->ups_base_frame[own][0][1];
-        const real ups_base_frame_xz = params->ups_base_frame[own][0][2];
-        const real ups_base_frame_yx = params->ups_base_frame[own][1][0];
-        const real ups_base_frame_yy = params->ups_base_frame[own][1][1];
-        const real ups_base_frame_yz = params->ups_base_frame[own][1][2];
-        const real ups_base_frame_zx = params->ups_base_frame[own][2][0];
-        const real ups_base_frame_zy = params->ups_base_frame[own][2][1];
-        const real ups_base_frame_zz = params->ups_base_frame[own][2][2];
-        const real ups_platform_point_x = params->ups_platform_point[own][0];
-        const real ups_platform_point_y = params->ups_platform_point[own][1];
-        const real ups_platform_point_z = params->ups_platform_point[own][2];
-        const real ups_link2_mass = params->ups_link2_mass[own];
+        KEEP_OF_LEG(ups_base_point_x, params->ups_base_point[own][0]);
+        KEEP_OF_LEG(ups_base_point_y, params->ups_base_point[own][1]);
+        KEEP_OF_LEG(ups_base_point_z, params->ups_base_point[own][2]);
+        KEEP_OF_LEG(ups_base_frame_xx, params->ups_base_frame[own][0][0]);
+        KEEP_OF_LEG(ups_base_frame_xy, params->ups_base_frame[own][0][1]);
+        KEEP_OF_LEG(ups_base_frame_xz, params->ups_base_frame[own][0][2]);
+        KEEP_OF_LEG(ups_base_frame_yx, params->ups_base_frame[own][1][0]);
+        KEEP_OF_LEG(ups_base_frame_yy, params->ups_base_frame[own][1][1]);
+        KEEP_OF_LEG(ups_base_frame_yz, params->ups_base_frame[own][1][2]);
+        KEEP_OF_LEG(ups_base_frame_zx, params->ups_base_frame[own][2][0]);
+        KEEP_OF_LEG(ups_base_frame_zy, params->ups_base_frame[own][2][1]);
+        KEEP_OF_LEG(ups_base_frame_zz, params->ups_base_frame[own][2][2]);
+        KEEP_OF_LEG(ups_platform_point_x, params->ups_platform_point[own][0]);
+        KEEP_OF_LEG(ups_platform_point_y, params->ups_platform_point[own][1]);
+        KEEP_OF_LEG(ups_platform_point_z, params->ups_platform_point[own][2]);
+        KEEP_OF_LEG(ups_link2_mass, params->ups_link2_mass[own]);
         const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[own][0];
         const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[own][1];
         const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[own][2];
@@ -744,7 +752,7 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_link2_inertia_yy = params->ups_link2_inertia[own][1][1];
         const real ups_link2_inertia_yz = params->ups_link2_inertia[own][1][2];
         const real ups_link2_inertia_zz = params->ups_link2_inertia[own][2][2];
-        const real ups_link3_mass = params->ups_link3_mass[own];
+        KEEP_OF_LEG(ups_link3_mass, params->ups_link3_mass[own]);
         const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[own][0];
         const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[own][1];
         const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[own][2];
@@ -755,17 +763,17 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_link3_inertia_yz = params->ups_link3_inertia[own][1][2];
         const real ups_link3_inertia_zz = params->ups_link3_inertia[own][2][2];
         static const signed char signs_ups_branch_1[] = {1, 1, 1, 1, 1, 1};
-        const real ups_branch_1 = signs_ups_branch_1[own];
+        KEEP_OF_LEG(ups_branch_1, signs_ups_branch_1[own]);
         static const signed char signs_ups_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real ups_branch_2 = signs_ups_branch_2[own];
+        KEEP_OF_LEG(ups_branch_2, signs_ups_branch_2[own]);
         /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
+        KEEP_OF_LEG(ups_h_2_in_spec2_x, ups_link2_centre_of_mass_x*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y, ups_link2_centre_of_mass_y*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z, ups_link2_centre_of_mass_z*ups_link2_mass);
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        KEEP_OF_LEG(ups_h_3_in_spec2_x, ups_link3_centre_of_mass_x*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y, ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z, ups_link3_centre_of_mass_z*ups_link3_mass);
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -775,37 +783,37 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
         const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
         const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
-        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx, ups_link2_inertia_xx + ups_link3_inertia_xx -
             ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_xy =
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy,
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+            ups_link2_inertia_xz - ups_link3_inertia_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz, ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
-            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy, ups_link2_inertia_zz + ups_link3_inertia_zz -
             ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_yz =
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz,
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_inertia_yz - ups_link3_inertia_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz, ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8));
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
             ups_J_group_2_in_axes2_zz;
         const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
-        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz);
         /* (ups-h_group_2) first moments of the links that turn with link 2 */
-        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
-        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
-        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x, ups_h_2_in_spec2_x + ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y, -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z, ups_h_2_in_spec2_y + ups_h_3_in_spec2_y);
         /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -822,106 +830,71 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
         const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
         /* (potential) potential energy */
-        const real ups_potential_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_potential_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_potential_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
-        const real ups_potential_t_4 = ups_base_frame_xx*ups_base_point_x +
-            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_potential_t_5 = ups_base_frame_xy*ups_base_point_x +
-            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_potential_t_6 = ups_base_frame_xz*ups_base_point_x +
-            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_base_frame_xx);
-        KEEP_OF_LEG(ups_base_frame_xy);
-        KEEP_OF_LEG(ups_base_frame_xz);
-        KEEP_OF_LEG(ups_base_frame_yx);
-        KEEP_OF_LEG(ups_base_frame_yy);
-        KEEP_OF_LEG(ups_base_frame_yz);
-        KEEP_OF_LEG(ups_base_frame_zx);
-        KEEP_OF_LEG(ups_base_frame_zy);
-        KEEP_OF_LEG(ups_base_frame_zz);
-        KEEP_OF_LEG(ups_base_point_x);
-        KEEP_OF_LEG(ups_base_point_y);
-        KEEP_OF_LEG(ups_base_point_z);
-        KEEP_OF_LEG(ups_branch_1);
-        KEEP_OF_LEG(ups_branch_2);
-        KEEP_OF_LEG(ups_h_2_in_spec2_x);
-        KEEP_OF_LEG(ups_h_2_in_spec2_y);
-        KEEP_OF_LEG(ups_h_2_in_spec2_z);
-        KEEP_OF_LEG(ups_h_3_in_spec2_x);
-        KEEP_OF_LEG(ups_h_3_in_spec2_y);
-        KEEP_OF_LEG(ups_h_3_in_spec2_z);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
-        KEEP_OF_LEG(ups_link2_mass);
-        KEEP_OF_LEG(ups_link3_mass);
-        KEEP_OF_LEG(ups_platform_point_x);
-        KEEP_OF_LEG(ups_platform_point_y);
-        KEEP_OF_LEG(ups_platform_point_z);
-        KEEP_OF_LEG(ups_potential_t);
-        KEEP_OF_LEG(ups_potential_t_2);
-        KEEP_OF_LEG(ups_potential_t_3);
-        KEEP_OF_LEG(ups_potential_t_4);
-        KEEP_OF_LEG(ups_potential_t_5);
-        KEEP_OF_LEG(ups_potential_t_6);
-        m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_10 : 0;
-        b_c_ups_in_platform_x += leg < LEGS_OF_ups ? ups_platform_point_x : 0;
-        b_c_ups_in_platform_y += leg < LEGS_OF_ups ? ups_platform_point_y : 0;
-        b_c_ups_in_platform_z += leg < LEGS_OF_ups ? ups_platform_point_z : 0;
+        KEEP_OF_LEG(ups_potential_t, gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx);
+        KEEP_OF_LEG(ups_potential_t_2, gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy);
+        KEEP_OF_LEG(ups_potential_t_3, gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz);
+        KEEP_OF_LEG(ups_potential_t_4, ups_base_frame_xx*ups_base_point_x +
+            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_5, ups_base_frame_xy*ups_base_point_x +
+            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_6, ups_base_frame_xz*ups_base_point_x +
+            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z);
+        if (leg < LEGS_OF_ups) {
+            m_star_of_legs += ups_link3_mass;
+            h_star_in_platform_x_of_legs += ups_h_star_t;
+            h_star_in_platform_y_of_legs += ups_h_star_t_2;
+            h_star_in_platform_z_of_legs += ups_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -ups_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -ups_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -ups_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -ups_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -ups_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -ups_J_star_t_10;
+            b_c_ups_in_platform_x += ups_platform_point_x;
+            b_c_ups_in_platform_y += ups_platform_point_y;
+            b_c_ups_in_platform_z += ups_platform_point_z;
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
         const size_t own = leg;
-        const real ups_leg7_base_point_x = params->ups_leg7_base_point[own][0];
-        const real ups_leg7_base_point_y = params->ups_leg7_base_point[own][1];
-        const real ups_leg7_base_point_z = params->ups_leg7_base_point[own][2];
-        const real ups_leg7_base_frame_xx = params->ups_leg7_base_frame[own][0][0];
-        const real ups_leg7_base_frame_xy = params->ups_leg7_base_frame[own][0][1];
-        const real ups_leg7_base_frame_xz = params->ups_leg7_base_frame[own][0][2];
-        const real ups_leg7_base_frame_yx = params->ups_leg7_base_frame[own][1][0];
-        const real ups_leg7_base_frame_yy = params->ups_leg7_base_frame[own][1][1];
-        const real ups_leg7_base_frame_yz = params->ups_leg7_base_frame[own][1][2];
-        const real ups_leg7_base_frame_zx = params->ups_leg7_base_frame[own][2][0];
-        const real ups_leg7_base_frame_zy = params->ups_leg7_base_frame[own][2][1];
-        const real ups_leg7_base_frame_zz = params->ups_leg7_base_frame[own][2][2];
-        const real ups_leg7_platform_point_x = params->ups_leg7_platform_point[own][0];
-        const real ups_leg7_platform_point_y = params->ups_leg7_platform_point[own][1];
-        const real ups_leg7_platform_point_z = params->ups_leg7_platform_point[own][2];
-        const real ups_leg7_link2_mass = params->ups_leg7_link2_mass[own];
-        const real ups_leg7_link2_centre_of_mass_x = params->ups_leg7_link2_centre_of_mass[own][0];
-        const real ups_leg7_link2_centre_of_mass_y = params->ups_leg7_link2_centre_of_mass[own][1];
-        const real ups_leg7_link2_centre_of_mass_z = params->ups_leg7_link2_centre_of_mass[own][2];
+        KEEP_OF_LEG(ups_leg7_base_point_x, params->ups_leg7_base_point[own][0]);
+        KEEP_OF_LEG(ups_leg7_base_point_y, params->ups_leg7_base_point[own][1]);
+        KEEP_OF_LEG(ups_leg7_base_point_z, params->ups_leg7_base_point[own][2]);
+        KEEP_OF_LEG(ups_leg7_base_frame_xx, params->ups_leg7_base_frame[own][0][0]);
+        KEEP_OF_LEG(ups_leg7_base_frame_xy, params->ups_leg7_base_frame[own][0][1]);
+        KEEP_OF_LEG(ups_leg7_base_frame_xz, params->ups_leg7_base_frame[own][0][2]);
+        KEEP_OF_LEG(ups_leg7_base_frame_yx, params->ups_leg7_base_frame[own][1][0]);
+        KEEP_OF_LEG(ups_leg7_base_frame_yy, params->ups_leg7_base_frame[own][1][1]);
+        KEEP_OF_LEG(ups_leg7_base_frame_yz, params->ups_leg7_base_frame[own][1][2]);
+        KEEP_OF_LEG(ups_leg7_base_frame_zx, params->ups_leg7_base_frame[own][2][0]);
+        KEEP_OF_LEG(ups_leg7_base_frame_zy, params->ups_leg7_base_frame[own][2][1]);
+        KEEP_OF_LEG(ups_leg7_base_frame_zz, params->ups_leg7_base_frame[own][2][2]);
+        KEEP_OF_LEG(ups_leg7_platform_point_x, params->ups_leg7_platform_point[own][0]);
+        KEEP_OF_LEG(ups_leg7_platform_point_y, params->ups_leg7_platform_point[own][1]);
+        KEEP_OF_LEG(ups_leg7_platform_point_z, params->ups_leg7_platform_point[own][2]);
+        KEEP_OF_LEG(ups_leg7_link2_mass, params->ups_leg7_link2_mass[own]);
+        const real ups_leg7_link2_centre_of_mass_x =
+            params->ups_leg7_link2_centre_of_mass[own][0];
+        const real ups_leg7_link2_centre_of_mass_y =
+            params->ups_leg7_link2_centre_of_mass[own][1];
+        const real ups_leg7_link2_centre_of_mass_z =
+            params->ups_leg7_link2_centre_of_mass[own][2];
         const real ups_leg7_link2_inertia_xx = params->ups_leg7_link2_inertia[own][0][0];
         const real ups_leg7_link2_inertia_xy = params->ups_leg7_link2_inertia[own][0][1];
         const real ups_leg7_link2_inertia_xz = params->ups_leg7_link2_inertia[own][0][2];
         const real ups_leg7_link2_inertia_yy = params->ups_leg7_link2_inertia[own][1][1];
         const real ups_leg7_link2_inertia_yz = params->ups_leg7_link2_inertia[own][1][2];
         const real ups_leg7_link2_inertia_zz = params->ups_leg7_link2_inertia[own][2][2];
-        const real ups_leg7_link3_mass = params->ups_leg7_link3_mass[own];
-        const real ups_leg7_link3_centre_of_mass_x = params->ups_leg7_link3_centre_of_mass[own][0];
-        const real ups_leg7_link3_centre_of_mass_y = params->ups_leg7_link3_centre_of_mass[own][1];
-        const real ups_leg7_link3_centre_of_mass_z = params->ups_leg7_link3_centre_of_mass[own][2];
+        KEEP_OF_LEG(ups_leg7_link3_mass, params->ups_leg7_link3_mass[own]);
+        const real ups_leg7_link3_centre_of_mass_x =
+            params->ups_leg7_link3_centre_of_mass[own][0];
+        const real ups_leg7_link3_centre_of_mass_y =
+            params->ups_leg7_link3_centre_of_mass[own][1];
+        const real ups_leg7_link3_centre_of_mass_z =
+            params->ups_leg7_link3_centre_of_mass[own][2];
         const real ups_leg7_link3_inertia_xx = params->ups_leg7_link3_inertia[own][0][0];
         const real ups_leg7_link3_inertia_xy = params->ups_leg7_link3_inertia[own][0][1];
         const real ups_leg7_link3_inertia_xz = params->ups_leg7_link3_inertia[own][0][2];
@@ -929,17 +902,17 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_leg7_link3_inertia_yz = params->ups_leg7_link3_inertia[own][1][2];
         const real ups_leg7_link3_inertia_zz = params->ups_leg7_link3_inertia[own][2][2];
         static const signed char signs_ups_leg7_branch_1[] = {1};
-        const real ups_leg7_branch_1 = signs_ups_leg7_branch_1[own];
+        KEEP_OF_LEG(ups_leg7_branch_1, signs_ups_leg7_branch_1[own]);
         static const signed char signs_ups_leg7_branch_2[] = {1};
-        const real ups_leg7_branch_2 = signs_ups_leg7_branch_2[own];
+        KEEP_OF_LEG(ups_leg7_branch_2, signs_ups_leg7_branch_2[own]);
         /* (ups_leg7-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_leg7_h_2_in_spec2_x = ups_leg7_link2_centre_of_mass_x*ups_leg7_link2_mass;
-        const real ups_leg7_h_2_in_spec2_y = ups_leg7_link2_centre_of_mass_y*ups_leg7_link2_mass;
-        const real ups_leg7_h_2_in_spec2_z = ups_leg7_link2_centre_of_mass_z*ups_leg7_link2_mass;
+        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_x, ups_leg7_link2_centre_of_mass_x*ups_leg7_link2_mass);
+        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_y, ups_leg7_link2_centre_of_mass_y*ups_leg7_link2_mass);
+        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_z, ups_leg7_link2_centre_of_mass_z*ups_leg7_link2_mass);
         /* (ups_leg7-h_3) first moment of link 3 about the connection point */
-        const real ups_leg7_h_3_in_spec2_x = ups_leg7_link3_centre_of_mass_x*ups_leg7_link3_mass;
-        const real ups_leg7_h_3_in_spec2_y = ups_leg7_link3_centre_of_mass_y*ups_leg7_link3_mass;
-        const real ups_leg7_h_3_in_spec2_z = ups_leg7_link3_centre_of_mass_z*ups_leg7_link3_mass;
+        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_x, ups_leg7_link3_centre_of_mass_x*ups_leg7_link3_mass);
+        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_y, ups_leg7_link3_centre_of_mass_y*ups_leg7_link3_mass);
+        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_z, ups_leg7_link3_centre_of_mass_z*ups_leg7_link3_mass);
         /* (ups_leg7-J_group_2) inertia of the links that turn with link 2, each about its reference point
            */
         const real ups_leg7_J_group_2_t =
@@ -958,47 +931,47 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
             ups_leg7_link3_centre_of_mass_z*ups_leg7_link3_centre_of_mass_z;
         const real ups_leg7_J_group_2_t_8 = ups_leg7_J_group_2_t_5 + ups_leg7_J_group_2_t_6 +
             ups_leg7_J_group_2_t_7;
-        const real ups_leg7_J_group_2_in_axes2_xx = ups_leg7_link2_inertia_xx +
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xx, ups_leg7_link2_inertia_xx +
             ups_leg7_link3_inertia_xx - ups_leg7_link2_mass*(ups_leg7_J_group_2_t -
             ups_leg7_J_group_2_t_4) - ups_leg7_link3_mass*(ups_leg7_J_group_2_t_5 -
-            ups_leg7_J_group_2_t_8);
-        const real ups_leg7_J_group_2_in_axes2_xy =
+            ups_leg7_J_group_2_t_8));
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xy,
             ups_leg7_link2_centre_of_mass_x*ups_leg7_link2_centre_of_mass_z*ups_leg7_link2_mass +
             ups_leg7_link3_centre_of_mass_x*ups_leg7_link3_centre_of_mass_z*ups_leg7_link3_mass -
-            ups_leg7_link2_inertia_xz - ups_leg7_link3_inertia_xz;
-        const real ups_leg7_J_group_2_in_axes2_xz = ups_leg7_link2_inertia_xy +
+            ups_leg7_link2_inertia_xz - ups_leg7_link3_inertia_xz);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xz, ups_leg7_link2_inertia_xy +
             ups_leg7_link3_inertia_xy -
             ups_leg7_link2_centre_of_mass_x*ups_leg7_link2_centre_of_mass_y*ups_leg7_link2_mass -
-            ups_leg7_link3_centre_of_mass_x*ups_leg7_link3_centre_of_mass_y*ups_leg7_link3_mass;
-        const real ups_leg7_J_group_2_in_axes2_yy = ups_leg7_link2_inertia_zz +
+            ups_leg7_link3_centre_of_mass_x*ups_leg7_link3_centre_of_mass_y*ups_leg7_link3_mass);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_yy, ups_leg7_link2_inertia_zz +
             ups_leg7_link3_inertia_zz - ups_leg7_link2_mass*(ups_leg7_J_group_2_t_3 -
             ups_leg7_J_group_2_t_4) - ups_leg7_link3_mass*(ups_leg7_J_group_2_t_7 -
-            ups_leg7_J_group_2_t_8);
-        const real ups_leg7_J_group_2_in_axes2_yz =
+            ups_leg7_J_group_2_t_8));
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_yz,
             ups_leg7_link2_centre_of_mass_y*ups_leg7_link2_centre_of_mass_z*ups_leg7_link2_mass +
             ups_leg7_link3_centre_of_mass_y*ups_leg7_link3_centre_of_mass_z*ups_leg7_link3_mass -
-            ups_leg7_link2_inertia_yz - ups_leg7_link3_inertia_yz;
-        const real ups_leg7_J_group_2_in_axes2_zz = ups_leg7_link2_inertia_yy +
+            ups_leg7_link2_inertia_yz - ups_leg7_link3_inertia_yz);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_zz, ups_leg7_link2_inertia_yy +
             ups_leg7_link3_inertia_yy - ups_leg7_link2_mass*(ups_leg7_J_group_2_t_2 -
             ups_leg7_J_group_2_t_4) - ups_leg7_link3_mass*(ups_leg7_J_group_2_t_6 -
-            ups_leg7_J_group_2_t_8);
+            ups_leg7_J_group_2_t_8));
         /* (ups_leg7-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real ups_leg7_Sigma_2_t = ups_leg7_J_group_2_in_axes2_xx +
             ups_leg7_J_group_2_in_axes2_yy + ups_leg7_J_group_2_in_axes2_zz;
         const real ups_leg7_Sigma_2_t_2 = R(0.5)*ups_leg7_Sigma_2_t;
-        const real ups_leg7_Sigma_2_in_axes2_xx = ups_leg7_Sigma_2_t_2 -
-            ups_leg7_J_group_2_in_axes2_xx;
-        const real ups_leg7_Sigma_2_in_axes2_yy = ups_leg7_Sigma_2_t_2 -
-            ups_leg7_J_group_2_in_axes2_yy;
-        const real ups_leg7_Sigma_2_in_axes2_zz = ups_leg7_Sigma_2_t_2 -
-            ups_leg7_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_xx, ups_leg7_Sigma_2_t_2 -
+            ups_leg7_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_t_2 -
+            ups_leg7_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_Sigma_2_t_2 -
+            ups_leg7_J_group_2_in_axes2_zz);
         /* (ups_leg7-h_group_2) first moments of the links that turn with link 2 */
-        const real ups_leg7_h_group_2_in_axes2_x = ups_leg7_h_2_in_spec2_x +
-            ups_leg7_h_3_in_spec2_x;
-        const real ups_leg7_h_group_2_in_axes2_y = -ups_leg7_h_2_in_spec2_z -
-            ups_leg7_h_3_in_spec2_z;
-        const real ups_leg7_h_group_2_in_axes2_z = ups_leg7_h_2_in_spec2_y +
-            ups_leg7_h_3_in_spec2_y;
+        KEEP_OF_LEG(ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_2_in_spec2_x +
+            ups_leg7_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_leg7_h_group_2_in_axes2_y, -ups_leg7_h_2_in_spec2_z -
+            ups_leg7_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_leg7_h_group_2_in_axes2_z, ups_leg7_h_2_in_spec2_y +
+            ups_leg7_h_3_in_spec2_y);
         /* (h_star) */
         const real ups_leg7_h_star_t = ups_leg7_link3_mass*ups_leg7_platform_point_x;
         const real ups_leg7_h_star_t_2 = ups_leg7_link3_mass*ups_leg7_platform_point_y;
@@ -1022,64 +995,21 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_leg7_J_star_t_10 = ups_leg7_link3_mass*(ups_leg7_J_star_t_3 -
             ups_leg7_J_star_t_4);
         /* (potential) */
-        const real ups_leg7_potential_t = gravity_x*ups_leg7_base_frame_xx +
-            gravity_y*ups_leg7_base_frame_yx + gravity_z*ups_leg7_base_frame_zx;
-        const real ups_leg7_potential_t_2 = gravity_x*ups_leg7_base_frame_xy +
-            gravity_y*ups_leg7_base_frame_yy + gravity_z*ups_leg7_base_frame_zy;
-        const real ups_leg7_potential_t_3 = gravity_x*ups_leg7_base_frame_xz +
-            gravity_y*ups_leg7_base_frame_yz + gravity_z*ups_leg7_base_frame_zz;
-        const real ups_leg7_potential_t_4 = ups_leg7_base_frame_xx*ups_leg7_base_point_x +
+        KEEP_OF_LEG(ups_leg7_potential_t, gravity_x*ups_leg7_base_frame_xx +
+            gravity_y*ups_leg7_base_frame_yx + gravity_z*ups_leg7_base_frame_zx);
+        KEEP_OF_LEG(ups_leg7_potential_t_2, gravity_x*ups_leg7_base_frame_xy +
+            gravity_y*ups_leg7_base_frame_yy + gravity_z*ups_leg7_base_frame_zy);
+        KEEP_OF_LEG(ups_leg7_potential_t_3, gravity_x*ups_leg7_base_frame_xz +
+            gravity_y*ups_leg7_base_frame_yz + gravity_z*ups_leg7_base_frame_zz);
+        KEEP_OF_LEG(ups_leg7_potential_t_4, ups_leg7_base_frame_xx*ups_leg7_base_point_x +
             ups_leg7_base_frame_yx*ups_leg7_base_point_y +
-            ups_leg7_base_frame_zx*ups_leg7_base_point_z;
-        const real ups_leg7_potential_t_5 = ups_leg7_base_frame_xy*ups_leg7_base_point_x +
+            ups_leg7_base_frame_zx*ups_leg7_base_point_z);
+        KEEP_OF_LEG(ups_leg7_potential_t_5, ups_leg7_base_frame_xy*ups_leg7_base_point_x +
             ups_leg7_base_frame_yy*ups_leg7_base_point_y +
-            ups_leg7_base_frame_zy*ups_leg7_base_point_z;
-        const real ups_leg7_potential_t_6 = ups_leg7_base_frame_xz*ups_leg7_base_point_x +
+            ups_leg7_base_frame_zy*ups_leg7_base_point_z);
+        KEEP_OF_LEG(ups_leg7_potential_t_6, ups_leg7_base_frame_xz*ups_leg7_base_point_x +
             ups_leg7_base_frame_yz*ups_leg7_base_point_y +
-            ups_leg7_base_frame_zz*ups_leg7_base_point_z;
-        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_leg7_base_frame_xx);
-        KEEP_OF_LEG(ups_leg7_base_frame_xy);
-        KEEP_OF_LEG(ups_leg7_base_frame_xz);
-        KEEP_OF_LEG(ups_leg7_base_frame_yx);
-        KEEP_OF_LEG(ups_leg7_base_frame_yy);
-        KEEP_OF_LEG(ups_leg7_base_frame_yz);
-        KEEP_OF_LEG(ups_leg7_base_frame_zx);
-        KEEP_OF_LEG(ups_leg7_base_frame_zy);
-        KEEP_OF_LEG(ups_leg7_base_frame_zz);
-        KEEP_OF_LEG(ups_leg7_base_point_x);
-        KEEP_OF_LEG(ups_leg7_base_point_y);
-        KEEP_OF_LEG(ups_leg7_base_point_z);
-        KEEP_OF_LEG(ups_leg7_branch_1);
-        KEEP_OF_LEG(ups_leg7_branch_2);
-        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_x);
-        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_y);
-        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_z);
-        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_x);
-        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_y);
-        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_z);
-        KEEP_OF_LEG(ups_leg7_h_group_2_in_axes2_x);
-        KEEP_OF_LEG(ups_leg7_h_group_2_in_axes2_y);
-        KEEP_OF_LEG(ups_leg7_h_group_2_in_axes2_z);
-        KEEP_OF_LEG(ups_leg7_link2_mass);
-        KEEP_OF_LEG(ups_leg7_link3_mass);
-        KEEP_OF_LEG(ups_leg7_platform_point_x);
-        KEEP_OF_LEG(ups_leg7_platform_point_y);
-        KEEP_OF_LEG(ups_leg7_platform_point_z);
-        KEEP_OF_LEG(ups_leg7_potential_t);
-        KEEP_OF_LEG(ups_leg7_potential_t_2);
-        KEEP_OF_LEG(ups_leg7_potential_t_3);
-        KEEP_OF_LEG(ups_leg7_potential_t_4);
-        KEEP_OF_LEG(ups_leg7_potential_t_5);
-        KEEP_OF_LEG(ups_leg7_potential_t_6);
+            ups_leg7_base_frame_zz*ups_leg7_base_point_z);
         m_star_of_legs += ups_leg7_link3_mass;
         h_star_in_platform_x_of_legs += ups_leg7_h_star_t;
         h_star_in_platform_y_of_legs += ups_leg7_h_star_t_2;
@@ -1095,60 +1025,40 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         b_c_ups_leg7_in_platform_z += ups_leg7_platform_point_z;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.14285714285714285)*b_c_ups_in_platform_x +
-        R(0.14285714285714285)*b_c_ups_leg7_in_platform_x;
-    const real b_c_in_platform_y = R(0.14285714285714285)*b_c_ups_in_platform_y +
-        R(0.14285714285714285)*b_c_ups_leg7_in_platform_y;
-    const real b_c_in_platform_z = R(0.14285714285714285)*b_c_ups_in_platform_z +
-        R(0.14285714285714285)*b_c_ups_leg7_in_platform_z;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.14285714285714285)*b_c_ups_in_platform_x +
+        R(0.14285714285714285)*b_c_ups_leg7_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.14285714285714285)*b_c_ups_in_platform_y +
+        R(0.14285714285714285)*b_c_ups_leg7_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.14285714285714285)*b_c_ups_in_platform_z +
+        R(0.14285714285714285)*b_c_ups_leg7_in_platform_z);
     return OK;
 }
 
@@ -1749,14 +1659,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1795,7 +1705,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1921,7 +1831,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
 INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_ups *v)
 {
-    /* (ups-S_dot) velocity of the connection point */
+    /* (ups-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
@@ -1936,10 +1846,10 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real ups_S_dot_z = t_dot_z + v->ups_S_dot_t_3;
     v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
         v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
         v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
         v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
     /* (ups-omega_1) angular velocity of link 1 */
@@ -1960,7 +1870,7 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
     v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
     v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
@@ -2003,7 +1913,7 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
     /* (ups-qdd_1) acceleration of joint 1 */
     v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
         - v->ups_qdd_2_t);
     v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
@@ -2164,7 +2074,7 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
 
 INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
-    /* (ups-S_ddot) acceleration of the connection point */
+    /* (ups-S_ddot) */
     v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
     /* (ups-alpha_1) angular acceleration of link 1 */
     const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
@@ -2176,10 +2086,10 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    /* (ups-phi_3) */
     v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
         - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 -
         v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] - v->ups_mu_2_t_5 -
         v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
@@ -2199,8 +2109,7 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
         ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
         m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
     v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
@@ -2317,7 +2226,7 @@ INLINE void stage_ups_leg7_X(const prepared *m, size_t w, size_t i, size_t j, co
 INLINE void stage_ups_leg7_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_ups_leg7 *v)
 {
-    /* (ups_leg7-S_dot) velocity of the connection point */
+    /* (ups_leg7-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     v->ups_leg7_S_dot_t = omega_y*v->ups_leg7_q_z - omega_z*v->ups_leg7_q_y;
@@ -2333,11 +2242,11 @@ INLINE void stage_ups_leg7_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     v->ups_leg7_S_dot_in_axes2_x = v->axis_x_ups_leg7_axes2_x*ups_leg7_S_dot_x +
         v->axis_x_ups_leg7_axes2_y*ups_leg7_S_dot_y +
         v->axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z;
-    /* (ups_leg7-qd_1) rate of joint 1 */
+    /* (ups_leg7-qd_1) */
     v->ups_leg7_qd_1 = v->inv_ups_leg7_root_1*(v->axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
         v->axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y +
         v->axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z);
-    /* (ups_leg7-qd_2) rate of joint 2 */
+    /* (ups_leg7-qd_2) */
     v->ups_leg7_qd_2 = v->inv_ups_leg7_q_3*(v->axis_y_ups_leg7_axes2_x*ups_leg7_S_dot_x +
         v->axis_y_ups_leg7_axes2_y*ups_leg7_S_dot_y +
         v->axis_y_ups_leg7_axes2_z*ups_leg7_S_dot_z);
@@ -2359,8 +2268,7 @@ INLINE void stage_ups_leg7_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     v->ups_leg7_qdd_2_t = ups_leg7_bias_t*v->ups_leg7_qd_2;
     /* (ups_leg7-phi_3) inertia force of link 3 from its turning about its reference point */
     v->ups_leg7_phi_3_t = v->ups_leg7_W_2_in_axes2_xx*m->ups_leg7_h_3_in_spec2_x[i];
-    /* (ups_leg7-mu_2) inertia moment of the links that turn with link 2, about their reference points
-       */
+    /* (ups_leg7-mu_2) */
     const real ups_leg7_mu_2_t = ups_leg7_omega_1_in_axes2_x*ups_leg7_omega_1_in_axes2_x;
     v->ups_leg7_mu_2_t_2 = m->ups_leg7_J_group_2_in_axes2_yz[i]*(ups_leg7_W_2_t -
         ups_leg7_W_2_t_2);
@@ -2410,7 +2318,7 @@ INLINE void stage_ups_leg7_A_V_X(size_t w, size_t j, const real *s, const real *
         v->ups_leg7_bias_in_axes2_z;
     /* (ups_leg7-qdd_1) acceleration of joint 1 */
     v->ups_leg7_qdd_1 = v->inv_ups_leg7_root_1*ups_leg7_rel_in_axes2_z;
-    /* (ups_leg7-qdd_2) acceleration of joint 2 */
+    /* (ups_leg7-qdd_2) */
     v->ups_leg7_qdd_2_t_2 = v->inv_ups_leg7_q_3*(v->ups_leg7_S_ddot_t + v->ups_leg7_S_ddot_t_2
         + v->ups_leg7_S_ddot_t_3 - v->ups_leg7_qdd_2_t);
     v->ups_leg7_qdd_2 = v->ups_leg7_qdd_2_t_2 - v->ups_leg7_W_2_in_axes2_xy;
@@ -2506,7 +2414,7 @@ INLINE void stage_ups_leg7_Z_dynamics(const prepared *m, size_t w, size_t i, siz
     v->ups_leg7_U_z = v->axis_x_ups_leg7_axes2_z*ups_leg7_phi_3_o_in_axes2_x -
         v->axis_y_ups_leg7_axes2_z*ups_leg7_c_o_in_axes2_y -
         v->axis_z_ups_leg7_axes2_z*ups_leg7_c_o_in_axes2_z;
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     v->ups_leg7_Z_a_t = v->ups_leg7_U_z*v->ups_leg7_q_y - v->ups_leg7_U_y*v->ups_leg7_q_z;
     v->ups_leg7_Z_a_t_2 = v->ups_leg7_U_x*v->ups_leg7_q_z - v->ups_leg7_U_z*v->ups_leg7_q_x;
     v->ups_leg7_Z_a_t_3 = v->ups_leg7_U_y*v->ups_leg7_q_x - v->ups_leg7_U_x*v->ups_leg7_q_y;
@@ -2577,7 +2485,7 @@ INLINE void stage_ups_leg7_M_dynamics(const prepared *m, size_t i, values_ups_le
     v->ups_leg7_Q_yz = v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 -
         v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 - v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_8
         - v->axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_7;
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     v->ups_leg7_M_ta_t = v->ups_leg7_Q_t_10*v->ups_leg7_q_z +
         v->ups_leg7_Q_xz*v->ups_leg7_q_x;
     v->ups_leg7_M_ta_t_2 = v->ups_leg7_Q_t_10*v->ups_leg7_q_y -
@@ -2593,7 +2501,7 @@ INLINE void stage_ups_leg7_M_dynamics(const prepared *m, size_t i, values_ups_le
     v->ups_leg7_M_ta_t_8 = v->ups_leg7_Q_xz*v->ups_leg7_q_z -
         v->ups_leg7_Q_zz*v->ups_leg7_q_x;
     v->ups_leg7_M_ta_t_9 = ups_leg7_M_ta_t_4 - v->ups_leg7_Q_xz*v->ups_leg7_q_y;
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     v->ups_leg7_M_aa_t = v->ups_leg7_M_ta_t_7*v->ups_leg7_q_y -
         v->ups_leg7_M_ta_t_3*v->ups_leg7_q_z;
     v->ups_leg7_M_aa_t_2 = v->ups_leg7_M_ta_t_5*v->ups_leg7_q_z +
@@ -2610,7 +2518,7 @@ INLINE void stage_ups_leg7_M_dynamics(const prepared *m, size_t i, values_ups_le
 
 INLINE void stage_ups_leg7_legs_required(const prepared *m, size_t i, values_ups_leg7 *v)
 {
-    /* (ups_leg7-S_ddot) acceleration of the connection point */
+    /* (ups_leg7-S_ddot) */
     v->ups_leg7_S_ddot_in_axes2_y = v->ups_leg7_S_ddot_t + v->ups_leg7_S_ddot_t_2 +
         v->ups_leg7_S_ddot_t_3;
     /* (ups_leg7-alpha_1) angular acceleration of link 1 */
@@ -2627,12 +2535,11 @@ INLINE void stage_ups_leg7_legs_required(const prepared *m, size_t i, values_ups
         ups_leg7_alpha_2_in_axes2_y;
     const real ups_leg7_B_2_in_axes2_zy = v->ups_leg7_W_2_in_axes2_yz +
         ups_leg7_alpha_2_in_axes2_x;
-    /* (ups_leg7-phi_3) inertia force of link 3 from its turning about its reference point */
+    /* (ups_leg7-phi_3) */
     v->ups_leg7_phi_3_in_axes2_x = v->ups_leg7_phi_3_t +
         ups_leg7_alpha_1_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] -
         ups_leg7_B_2_in_axes2_xy*m->ups_leg7_h_3_in_spec2_z[i];
-    /* (ups_leg7-mu_2) inertia moment of the links that turn with link 2, about their reference points
-       */
+    /* (ups_leg7-mu_2) */
     const real ups_leg7_mu_2_in_axes2_x = v->ups_leg7_mu_2_t_2 -
         v->ups_leg7_S_ddot_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i] - v->ups_leg7_mu_2_t_5 -
         v->ups_leg7_S_ddot_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] +
@@ -2654,8 +2561,7 @@ INLINE void stage_ups_leg7_legs_required(const prepared *m, size_t i, values_ups
         m->ups_leg7_J_group_2_in_axes2_xz[i]*ups_leg7_alpha_1_in_axes2_x +
         m->ups_leg7_J_group_2_in_axes2_yz[i]*ups_leg7_alpha_1_in_axes2_y -
         ups_leg7_B_2_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i];
-    /* (ups_leg7-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups_leg7-c) */
     v->ups_leg7_c_in_axes2_y = ups_leg7_alpha_1_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
         v->ups_leg7_c_t - m->ups_leg7_h_3_in_spec2_x[i]*v->ups_leg7_qdd_2_t_2 -
         v->inv_ups_leg7_q_3*ups_leg7_mu_2_in_axes2_z;
@@ -2718,7 +2624,7 @@ INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, r
     gather(&terms[3*count + k], add, v->ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_ups_yy */
     gather(&terms[7*count + k], add, v->ups_M_ta_t_9);  /* M_ta_ups_zz */
     gather(&terms[8*count + k], add, -v->ups_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2727,7 +2633,7 @@ INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, r
     gather(&terms[11*count + k], add, v->ups_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->ups_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->ups_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->ups_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->ups_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->ups_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2742,7 +2648,7 @@ INLINE void any_sums_ups_2(size_t k, size_t count, int add, const values_ups *v,
     gather(&terms[0*count + k], add, v->ups_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->ups_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->ups_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->ups_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->ups_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->ups_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2754,7 +2660,7 @@ INLINE void any_entries_ups(size_t k, size_t count, const values_ups *v, real *o
     o[0*count + k] = v->axis_x_ups_axes2_x;
     o[1*count + k] = v->axis_x_ups_axes2_y;
     o[2*count + k] = v->axis_x_ups_axes2_z;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    /* (ups-H_a_3) */
     o[3*count + k] = v->ups_H_a_3_x;
     o[4*count + k] = v->ups_H_a_3_y;
     o[5*count + k] = v->ups_H_a_3_z;
@@ -2770,11 +2676,39 @@ INLINE void any_singular_ups(size_t k, const values_ups *v, real *o)
 INLINE void any_sums_ups_leg7(size_t k, size_t count, int add, const values_ups_leg7 *v, real
     *terms)
 {
-    /* (Z_t) translational part of Z */
+    /* (M_tt) */
+    gather(&terms[18*count + k], add, v->ups_leg7_Q_t_10);  /* M_tt_t */
+    gather(&terms[19*count + k], add, v->ups_leg7_Q_t_12);  /* M_tt_t_2 */
+    gather(&terms[0*count + k], add, v->ups_leg7_Q_xz);  /* M_tt_xz */
+    gather(&terms[1*count + k], add, v->ups_leg7_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[2*count + k], add, v->ups_leg7_Q_yz);  /* M_tt_yz */
+    gather(&terms[3*count + k], add, v->ups_leg7_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[20*count + k], add, v->ups_leg7_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[21*count + k], add, v->ups_leg7_M_ta_t_9);  /* M_ta_ups_leg7_zz */
+    gather(&terms[22*count + k], add, v->ups_leg7_M_ta_t);  /* M_ta_t_2 */
+    gather(&terms[7*count + k], add, v->ups_leg7_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[8*count + k], add, v->ups_leg7_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[9*count + k], add, v->ups_leg7_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[10*count + k], add, v->ups_leg7_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[11*count + k], add, v->ups_leg7_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) */
+    gather(&terms[12*count + k], add, v->ups_leg7_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[13*count + k], add, v->ups_leg7_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[14*count + k], add, v->ups_leg7_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[15*count + k], add, v->ups_leg7_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[16*count + k], add, v->ups_leg7_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[17*count + k], add, v->ups_leg7_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_ups_leg7_2(size_t k, size_t count, int add, const values_ups_leg7 *v, real
+    *terms)
+{
+    /* (Z_t) */
     gather(&terms[0*count + k], add, v->ups_leg7_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->ups_leg7_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->ups_leg7_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->ups_leg7_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->ups_leg7_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->ups_leg7_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2786,6 +2720,144 @@ INLINE void any_singular_ups_leg7(size_t k, const values_ups_leg7 *v, real *o)
         UNLESS(magnitude(v->ups_leg7_q_3_t_2) > LEAST_1) +
         UNLESS(magnitude(v->ups_leg7_root_1) > LEAST_2) + UNLESS(magnitude(v->ups_leg7_q_3) >
         LEAST_2);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_t = sums[20*w + k];
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
+    const real M_tt_t_2 = sums[21*w + k];
+    const real M_tt_xy_of_legs = sums[1*w + k];
+    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_t = sums[22*w + k];
+    const real M_ta_ups_leg7_zz = sums[23*w + k];
+    const real M_ta_ups_yy = sums[6*w + k];
+    const real M_ta_ups_zz = sums[7*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz;
+    const real M_ta_t_2 = sums[24*w + k];
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs - M_ta_t_2;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yy = M_ta_ups_yy - M_ta_t;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz = M_ta_ups_leg7_zz + M_ta_ups_zz;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
@@ -2855,7 +2927,7 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
     stage_ups_M_dynamics(m, i, &v);
     any_sums_ups(k, count, add, &v, terms);
-    any_sums_ups_2(k, count, add, &v, terms + 20*count);
+    any_sums_ups_2(k, count, add, &v, terms + 25*count);
     any_entries_ups(k, count, &v, o);
     any_singular_ups(k, &v, o + 6*count);
     o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
@@ -2870,163 +2942,16 @@ INLINE void dynamics_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t
     stage_ups_leg7_V_X(m, w, i, j, V, &v);
     stage_ups_leg7_Z_dynamics(m, w, i, j, V, &v);
     stage_ups_leg7_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[26*count + k], add, v.ups_leg7_Q_t_10);  /* M_tt_t */
-    gather(&terms[27*count + k], add, v.ups_leg7_Q_t_12);  /* M_tt_t_2 */
-    gather(&terms[2*count + k], add, v.ups_leg7_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ups_leg7_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ups_leg7_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ups_leg7_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[28*count + k], add, v.ups_leg7_M_ta_t_5);  /* M_ta_t */
-    gather(&terms[29*count + k], add, v.ups_leg7_M_ta_t_9);  /* M_ta_ups_leg7_zz */
-    gather(&terms[30*count + k], add, v.ups_leg7_M_ta_t);  /* M_ta_t_2 */
-    gather(&terms[9*count + k], add, v.ups_leg7_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.ups_leg7_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.ups_leg7_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_leg7_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_leg7_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) */
-    gather(&terms[14*count + k], add, v.ups_leg7_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.ups_leg7_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.ups_leg7_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.ups_leg7_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.ups_leg7_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.ups_leg7_M_aa_t_6);  /* M_aa_zz_of_legs */
-    any_sums_ups_leg7(k, count, add, &v, terms + 20*count);
+    any_sums_ups_leg7(k, count, add, &v, terms + 2*count);
+    any_sums_ups_leg7_2(k, count, add, &v, terms + 25*count);
     any_singular_ups_leg7(k, &v, o);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_t = sums[26*w + k];
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
-    const real M_tt_t_2 = sums[27*w + k];
-    const real M_tt_xy_of_legs = sums[1*w + k];
-    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[28*w + k];
-    const real M_ta_ups_leg7_zz = sums[29*w + k];
-    const real M_ta_ups_yy = sums[6*w + k];
-    const real M_ta_ups_zz = sums[7*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz;
-    const real M_ta_t_2 = sums[30*w + k];
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs - M_ta_t_2;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yy = M_ta_ups_yy - M_ta_t;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    const real M_ta_zz = M_ta_ups_leg7_zz + M_ta_ups_zz;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 25*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
@@ -3123,134 +3048,14 @@ INLINE void M_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t j, siz
     values_ups_leg7 v;
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
     stage_ups_leg7_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[20*count + k], add, v.ups_leg7_Q_t_10);  /* M_tt_t */
-    gather(&terms[21*count + k], add, v.ups_leg7_Q_t_12);  /* M_tt_t_2 */
-    gather(&terms[2*count + k], add, v.ups_leg7_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ups_leg7_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ups_leg7_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ups_leg7_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[22*count + k], add, v.ups_leg7_M_ta_t_5);  /* M_ta_t */
-    gather(&terms[23*count + k], add, v.ups_leg7_M_ta_t_9);  /* M_ta_ups_leg7_zz */
-    gather(&terms[24*count + k], add, v.ups_leg7_M_ta_t);  /* M_ta_t_2 */
-    gather(&terms[9*count + k], add, v.ups_leg7_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.ups_leg7_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.ups_leg7_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_leg7_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_leg7_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) */
-    gather(&terms[14*count + k], add, v.ups_leg7_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.ups_leg7_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.ups_leg7_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.ups_leg7_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.ups_leg7_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.ups_leg7_M_aa_t_6);  /* M_aa_zz_of_legs */
+    any_sums_ups_leg7(k, count, add, &v, terms + 2*count);
     any_singular_ups_leg7(k, &v, o);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_t = sums[20*w + k];
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
-    const real M_tt_t_2 = sums[21*w + k];
-    const real M_tt_xy_of_legs = sums[1*w + k];
-    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[22*w + k];
-    const real M_ta_ups_leg7_zz = sums[23*w + k];
-    const real M_ta_ups_yy = sums[6*w + k];
-    const real M_ta_ups_zz = sums[7*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz;
-    const real M_ta_t_2 = sums[24*w + k];
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs - M_ta_t_2;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yy = M_ta_ups_yy - M_ta_t;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    const real M_ta_zz = M_ta_ups_leg7_zz + M_ta_ups_zz;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
@@ -3289,7 +3094,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -3357,41 +3162,13 @@ INLINE void Z_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
     stage_ups_leg7_V_X(m, w, i, j, V, &v);
     stage_ups_leg7_Z_dynamics(m, w, i, j, V, &v);
-    any_sums_ups_leg7(k, count, add, &v, terms);
+    any_sums_ups_leg7_2(k, count, add, &v, terms);
     any_singular_ups_leg7(k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -3431,7 +3208,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -3597,19 +3374,18 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
     const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
     const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
@@ -3642,8 +3418,7 @@ INLINE void required_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t
     stage_ups_leg7_V_X(m, w, i, j, V, &v);
     stage_ups_leg7_A_V_X(w, j, s, A, &v);
     stage_ups_leg7_legs_required(m, i, &v);
-    /* (ups_leg7-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups_leg7-c) */
     const real ups_leg7_c_x = v.axis_y_ups_leg7_axes2_x*v.ups_leg7_c_in_axes2_y -
         v.axis_x_ups_leg7_axes2_x*v.ups_leg7_phi_3_in_axes2_x +
         v.axis_z_ups_leg7_axes2_x*v.ups_leg7_c_in_axes2_z;
@@ -3670,7 +3445,7 @@ INLINE void required_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3680,7 +3455,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3744,8 +3519,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[7*LANES];
@@ -3789,21 +3564,21 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-q_1) displacement of joint 1 */
+    /* (ups-q_1) */
     const real ups_q_1 = angle(v.inv_ups_root_1*ups_S_in_turn1_y,
         v.inv_ups_root_1*ups_S_in_turn1_x);
-    /* (ups-q_2) displacement of joint 2 */
+    /* (ups-q_2) */
     const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
     o[1*count + k] = ups_q_2;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     o[2*count + k] = v.ups_q_3;
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1);
@@ -3825,23 +3600,23 @@ INLINE void inverse_kinematics_legs_ups_leg7(const prepared *m, size_t w, size_t
 {
     values_ups_leg7 v;
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
-    /* (ups_leg7-S) from the base point to the connection point */
+    /* (ups_leg7-S) */
     const real ups_leg7_S_in_turn1_x = v.ups_leg7_S_x*m->ups_leg7_base_frame_xx[i] +
         v.ups_leg7_S_y*m->ups_leg7_base_frame_yx[i] +
         v.ups_leg7_S_z*m->ups_leg7_base_frame_zx[i];
     const real ups_leg7_S_in_turn1_y = v.ups_leg7_S_x*m->ups_leg7_base_frame_xy[i] +
         v.ups_leg7_S_y*m->ups_leg7_base_frame_yy[i] +
         v.ups_leg7_S_z*m->ups_leg7_base_frame_zy[i];
-    /* (ups_leg7-q_1) displacement of joint 1 */
+    /* (ups_leg7-q_1) */
     const real ups_leg7_q_1 = angle(v.inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y,
         v.inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x);
-    /* (ups_leg7-q_2) displacement of joint 2 */
+    /* (ups_leg7-q_2) */
     const real ups_leg7_q_2 = angle(-v.ups_leg7_e_1_in_axes2_x, v.ups_leg7_c_2);
     /* (ups_leg7-q_1) */
     o[0*count + k] = ups_leg7_q_1;
     /* (ups_leg7-q_2) */
     o[1*count + k] = ups_leg7_q_2;
-    /* (ups_leg7-q_3) displacement of joint 3 */
+    /* (ups_leg7-q_3) */
     o[2*count + k] = v.ups_leg7_q_3;
     o[3*count + k] = UNLESS(magnitude(v.ups_leg7_root_1_t_4) > LEAST_1) +
         UNLESS(magnitude(v.ups_leg7_q_3_t_2) > LEAST_1);
@@ -3923,9 +3698,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     o[0*count + k] = v.ups_qd_1;
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
@@ -3949,9 +3724,9 @@ INLINE void joint_rates_legs_ups_leg7(const prepared *m, size_t w, size_t i, siz
     values_ups_leg7 v;
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
     stage_ups_leg7_V_X(m, w, i, j, V, &v);
-    /* (ups_leg7-qd_1) rate of joint 1 */
+    /* (ups_leg7-qd_1) */
     o[0*count + k] = v.ups_leg7_qd_1;
-    /* (ups_leg7-qd_2) rate of joint 2 */
+    /* (ups_leg7-qd_2) */
     o[1*count + k] = v.ups_leg7_qd_2;
     /* (ups_leg7-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_leg7_S_dot_in_axes2_x;
@@ -4036,11 +3811,11 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, A, &v);
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    /* (ups-rel) */
     const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
-    /* (ups-qdd_1) acceleration of joint 1 */
+    /* (ups-qdd_1) */
     o[0*count + k] = v.ups_qdd_1;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
@@ -4065,12 +3840,12 @@ INLINE void joint_accelerations_legs_ups_leg7(const prepared *m, size_t w, size_
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
     stage_ups_leg7_V_X(m, w, i, j, V, &v);
     stage_ups_leg7_A_V_X(w, j, s, A, &v);
-    /* (ups_leg7-rel) acceleration of the connection point left to the joint accelerations */
+    /* (ups_leg7-rel) */
     const real ups_leg7_rel_in_axes2_x = v.ups_leg7_S_ddot_in_axes2_x -
         v.ups_leg7_W_2_in_axes2_xx*v.ups_leg7_q_3;
-    /* (ups_leg7-qdd_1) acceleration of joint 1 */
+    /* (ups_leg7-qdd_1) */
     o[0*count + k] = v.ups_leg7_qdd_1;
-    /* (ups_leg7-qdd_2) acceleration of joint 2 */
+    /* (ups_leg7-qdd_2) */
     o[1*count + k] = v.ups_leg7_qdd_2;
     /* (ups_leg7-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_leg7_rel_in_axes2_x;
@@ -4156,7 +3931,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (ups-acc_3) */
     const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
     const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
     const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
@@ -4180,7 +3955,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = ups_c_true_x;
     o[1*count + k] = ups_c_true_y;
     o[2*count + k] = ups_c_true_z;
-    /* (ups-w_3) reciprocal vector 3 */
+    /* (ups-w_3) */
     o[3*count + k] = v.axis_x_ups_axes2_x;
     o[4*count + k] = v.axis_x_ups_axes2_y;
     o[5*count + k] = v.axis_x_ups_axes2_z;
@@ -4207,7 +3982,7 @@ INLINE void legs_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t j, 
     stage_ups_leg7_V_X(m, w, i, j, V, &v);
     stage_ups_leg7_A_V_X(w, j, s, A, &v);
     stage_ups_leg7_legs_required(m, i, &v);
-    /* (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (ups_leg7-acc_3) */
     const real ups_leg7_acc_3_in_axes2_x = v.ups_leg7_S_ddot_in_axes2_x -
         v.ups_leg7_g_in_axes2_x;
     const real ups_leg7_acc_3_in_axes2_y = v.ups_leg7_S_ddot_in_axes2_y -
@@ -4281,7 +4056,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -4296,12 +4071,12 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    /* (ups-root_1) */
     const real ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
     const real ups_root_1_2 = m->ups_branch_1[i]*root(ups_root_1_t_5);
@@ -4310,10 +4085,10 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     const real ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x;
     /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
     const real ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     const real ups_q_3_t_3 = v.ups_q_3_t + ups_root_1_t_5;
     const real ups_q_3_2 = m->ups_branch_2[i]*root(ups_q_3_t_3);
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (ups-c_2) */
     const real inv_ups_q_3_2 = 1/ups_q_3_2;
     const real ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2;
     /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
@@ -4344,14 +4119,14 @@ INLINE void potential_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_
 {
     values_ups_leg7 v;
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
-    /* (ups_leg7-S) from the base point to the connection point */
+    /* (ups_leg7-S) */
     const real ups_leg7_S_in_turn1_x = v.ups_leg7_S_x*m->ups_leg7_base_frame_xx[i] +
         v.ups_leg7_S_y*m->ups_leg7_base_frame_yx[i] +
         v.ups_leg7_S_z*m->ups_leg7_base_frame_zx[i];
     const real ups_leg7_S_in_turn1_y = v.ups_leg7_S_x*m->ups_leg7_base_frame_xy[i] +
         v.ups_leg7_S_y*m->ups_leg7_base_frame_yy[i] +
         v.ups_leg7_S_z*m->ups_leg7_base_frame_zy[i];
-    /* (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    /* (ups_leg7-root_1) */
     const real ups_leg7_root_1_t_5 = ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x +
         ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y;
     const real ups_leg7_root_1_2 = m->ups_leg7_branch_1[i]*root(ups_leg7_root_1_t_5);
@@ -4360,10 +4135,10 @@ INLINE void potential_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_
     const real ups_leg7_c_1 = inv_ups_leg7_root_1_2*ups_leg7_S_in_turn1_x;
     /* (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction */
     const real ups_leg7_s_1 = inv_ups_leg7_root_1_2*ups_leg7_S_in_turn1_y;
-    /* (ups_leg7-q_3) displacement of joint 3 */
+    /* (ups_leg7-q_3) */
     const real ups_leg7_q_3_t_3 = v.ups_leg7_q_3_t + ups_leg7_root_1_t_5;
     const real ups_leg7_q_3_2 = m->ups_leg7_branch_2[i]*root(ups_leg7_q_3_t_3);
-    /* (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (ups_leg7-c_2) */
     const real inv_ups_leg7_q_3_2 = 1/ups_leg7_q_3_2;
     const real ups_leg7_c_2_2 = inv_ups_leg7_q_3_2*ups_leg7_root_1_2;
     /* (ups_leg7-s_2) sine of the angle of joint 2 from its reference direction */
@@ -4479,7 +4254,7 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     const real ups_pivot_size_4 = magnitude(v.ups_q_3);
     const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
         R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
     const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
     const real ups_spread_t_3 = m->b_c_in_platform_z - m->ups_platform_point_z[i];
@@ -4547,7 +4322,7 @@ INLINE void condition_place_ups_leg7(size_t w, size_t k, size_t at, size_t count
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_ups = sums[0*w + k];
     const real spread_ups_leg7 = sums[1*w + k];
     const real spread_ = root(R(0.14285714285714285)*spread_ups +
@@ -5411,13 +5186,12 @@ int stewart_7ups_free_rotation(const real *X, real *R_out)
 
 int stewart_7ups_free_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
@@ -5436,13 +5210,12 @@ int stewart_7ups_free_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int stewart_7ups_free_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 

@@ -53,10 +53,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && STEWART_SPS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && STEWART_SPS_LANES >= 4 && VECTORS_OF(STEWART_SPS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +72,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +286,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +301,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +407,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -619,8 +629,9 @@ static int acceptable(const stewart_sps_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *model)
 {
@@ -641,9 +652,9 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     real b_c_sps_in_platform_x = 0;
     real b_c_sps_in_platform_y = 0;
     real b_c_sps_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -670,32 +681,27 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.16666666666666666)*root(6);
+    KEEP(spread_t, R(0.16666666666666666)*root(6));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.9595917942265426)*spread_t;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(legs_size);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.9595917942265426)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_sps); ++leg) {
         const size_t own = leg < LEGS_OF_sps ? leg : 0;
-        const real sps_base_point_x = params->sps_base_point[own][0];
-        const real sps_base_point_y = params->sps_base_point[own][1];
-        const real sps_base_point_z = params->sps_base_point[own][2];
-        const real sps_base_frame_xx = params->sps_base_frame[own][0][0];
-        const real sps_base_frame_xy = params->sps_base_frame[own][0][1];
-        const real sps_base_frame_xz = params->sps_base_frame[own][0][2];
-        const real sps_base_frame_yx = params->sps_base_frame[own][1][0];
-        const real sps_base_frame_yy = params->sps_base_frame[own][1][1];
-        const real sps_base_frame_yz = params->sps_base_frame[own][1][2];
-        const real sps_base_frame_zx = params->sps_base_frame[own][2][0];
-        const real sps_base_frame_zy = params->sps_base_frame[own][2][1];
-        const real sps_base_frame_zz = params->sps_base_frame[own][2][2];
-        const real sps_platform_point_x = params->sps_platform_point[own][0];
-        const real sps_platform_point_y = params->sps_platform_point[own][1];
-        const real sps_platform_point_z = params->sps_platform_point[own][2];
-        const real sps_link3_mass = params->sps_link3_mass[own];
+        KEEP_OF_LEG(sps_base_point_x, params->sps_base_point[own][0]);
+        KEEP_OF_LEG(sps_base_point_y, params->sps_base_point[own][1]);
+        KEEP_OF_LEG(sps_base_point_z, params->sps_base_point[own][2]);
+        KEEP_OF_LEG(sps_base_frame_xx, params->sps_base_frame[own][0][0]);
+        KEEP_OF_LEG(sps_base_frame_xy, params->sps_base_frame[own][0][1]);
+        KEEP_OF_LEG(sps_base_frame_xz, params->sps_base_frame[own][0][2]);
+        KEEP_OF_LEG(sps_base_frame_yx, params->sps_base_frame[own][1][0]);
+        KEEP_OF_LEG(sps_base_frame_yy, params->sps_base_frame[own][1][1]);
+        KEEP_OF_LEG(sps_base_frame_yz, params->sps_base_frame[own][1][2]);
+        KEEP_OF_LEG(sps_base_frame_zx, params->sps_base_frame[own][2][0]);
+        KEEP_OF_LEG(sps_base_frame_zy, params->sps_base_frame[own][2][1]);
+        KEEP_OF_LEG(sps_base_frame_zz, params->sps_base_frame[own][2][2]);
+        KEEP_OF_LEG(sps_platform_point_x, params->sps_platform_point[own][0]);
+        KEEP_OF_LEG(sps_platform_point_y, params->sps_platform_point[own][1]);
+        KEEP_OF_LEG(sps_platform_point_z, params->sps_platform_point[own][2]);
+        KEEP_OF_LEG(sps_link3_mass, params->sps_link3_mass[own]);
         const real sps_link3_centre_of_mass_x = params->sps_link3_centre_of_mass[own][0];
         const real sps_link3_centre_of_mass_y = params->sps_link3_centre_of_mass[own][1];
         const real sps_link3_centre_of_mass_z = params->sps_link3_centre_of_mass[own][2];
@@ -705,7 +711,7 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_link3_inertia_yy = params->sps_link3_inertia[own][1][1];
         const real sps_link3_inertia_yz = params->sps_link3_inertia[own][1][2];
         const real sps_link3_inertia_zz = params->sps_link3_inertia[own][2][2];
-        const real sps_link4_mass = params->sps_link4_mass[own];
+        KEEP_OF_LEG(sps_link4_mass, params->sps_link4_mass[own]);
         const real sps_link4_centre_of_mass_x = params->sps_link4_centre_of_mass[own][0];
         const real sps_link4_centre_of_mass_y = params->sps_link4_centre_of_mass[own][1];
         const real sps_link4_centre_of_mass_z = params->sps_link4_centre_of_mass[own][2];
@@ -716,17 +722,17 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_link4_inertia_yz = params->sps_link4_inertia[own][1][2];
         const real sps_link4_inertia_zz = params->sps_link4_inertia[own][2][2];
         static const signed char signs_sps_branch_1[] = {1, 1, 1, 1, 1, 1};
-        const real sps_branch_1 = signs_sps_branch_1[own];
+        KEEP_OF_LEG(sps_branch_1, signs_sps_branch_1[own]);
         static const signed char signs_sps_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real sps_branch_2 = signs_sps_branch_2[own];
+        KEEP_OF_LEG(sps_branch_2, signs_sps_branch_2[own]);
         /* (sps-h_3) first moment of link 3 about the origin of link 3 */
-        const real sps_h_3_in_spec3_x = sps_link3_centre_of_mass_x*sps_link3_mass;
-        const real sps_h_3_in_spec3_y = sps_link3_centre_of_mass_y*sps_link3_mass;
-        const real sps_h_3_in_spec3_z = sps_link3_centre_of_mass_z*sps_link3_mass;
+        KEEP_OF_LEG(sps_h_3_in_spec3_x, sps_link3_centre_of_mass_x*sps_link3_mass);
+        KEEP_OF_LEG(sps_h_3_in_spec3_y, sps_link3_centre_of_mass_y*sps_link3_mass);
+        KEEP_OF_LEG(sps_h_3_in_spec3_z, sps_link3_centre_of_mass_z*sps_link3_mass);
         /* (sps-h_4) first moment of link 4 about the connection point */
-        const real sps_h_4_in_spec3_x = sps_link4_centre_of_mass_x*sps_link4_mass;
-        const real sps_h_4_in_spec3_y = sps_link4_centre_of_mass_y*sps_link4_mass;
-        const real sps_h_4_in_spec3_z = sps_link4_centre_of_mass_z*sps_link4_mass;
+        KEEP_OF_LEG(sps_h_4_in_spec3_x, sps_link4_centre_of_mass_x*sps_link4_mass);
+        KEEP_OF_LEG(sps_h_4_in_spec3_y, sps_link4_centre_of_mass_y*sps_link4_mass);
+        KEEP_OF_LEG(sps_h_4_in_spec3_z, sps_link4_centre_of_mass_z*sps_link4_mass);
         /* (sps-J_group_3) inertia of the links that turn with link 3, each about its reference point */
         const real sps_J_group_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x;
         const real sps_J_group_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y;
@@ -736,35 +742,35 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_J_group_3_t_6 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y;
         const real sps_J_group_3_t_7 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z;
         const real sps_J_group_3_t_8 = sps_J_group_3_t_5 + sps_J_group_3_t_6 + sps_J_group_3_t_7;
-        const real sps_J_group_3_in_axes3_xx = sps_link3_inertia_yy + sps_link4_inertia_yy -
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_xx, sps_link3_inertia_yy + sps_link4_inertia_yy -
             sps_link3_mass*(sps_J_group_3_t_2 - sps_J_group_3_t_4) -
-            sps_link4_mass*(sps_J_group_3_t_6 - sps_J_group_3_t_8);
-        const real sps_J_group_3_in_axes3_xy = sps_link3_inertia_yz + sps_link4_inertia_yz -
+            sps_link4_mass*(sps_J_group_3_t_6 - sps_J_group_3_t_8));
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_xy, sps_link3_inertia_yz + sps_link4_inertia_yz -
             sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_z*sps_link3_mass -
-            sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_z*sps_link4_mass;
-        const real sps_J_group_3_in_axes3_xz = sps_link3_inertia_xy + sps_link4_inertia_xy -
+            sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_z*sps_link4_mass);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_xz, sps_link3_inertia_xy + sps_link4_inertia_xy -
             sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_y*sps_link3_mass -
-            sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_y*sps_link4_mass;
-        const real sps_J_group_3_in_axes3_yy = sps_link3_inertia_zz + sps_link4_inertia_zz -
+            sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_y*sps_link4_mass);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_yy, sps_link3_inertia_zz + sps_link4_inertia_zz -
             sps_link3_mass*(sps_J_group_3_t_3 - sps_J_group_3_t_4) -
-            sps_link4_mass*(sps_J_group_3_t_7 - sps_J_group_3_t_8);
-        const real sps_J_group_3_in_axes3_yz = sps_link3_inertia_xz + sps_link4_inertia_xz -
+            sps_link4_mass*(sps_J_group_3_t_7 - sps_J_group_3_t_8));
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_yz, sps_link3_inertia_xz + sps_link4_inertia_xz -
             sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_z*sps_link3_mass -
-            sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_z*sps_link4_mass;
-        const real sps_J_group_3_in_axes3_zz = sps_link3_inertia_xx + sps_link4_inertia_xx -
+            sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_z*sps_link4_mass);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_zz, sps_link3_inertia_xx + sps_link4_inertia_xx -
             sps_link3_mass*(sps_J_group_3_t - sps_J_group_3_t_4) -
-            sps_link4_mass*(sps_J_group_3_t_5 - sps_J_group_3_t_8);
+            sps_link4_mass*(sps_J_group_3_t_5 - sps_J_group_3_t_8));
         /* (sps-Sigma_3) second moment of mass of the links that turn with link 3 */
         const real sps_Sigma_3_t = sps_J_group_3_in_axes3_xx + sps_J_group_3_in_axes3_yy +
             sps_J_group_3_in_axes3_zz;
         const real sps_Sigma_3_t_2 = R(0.5)*sps_Sigma_3_t;
-        const real sps_Sigma_3_in_axes3_xx = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_xx;
-        const real sps_Sigma_3_in_axes3_yy = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_yy;
-        const real sps_Sigma_3_in_axes3_zz = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_zz;
+        KEEP_OF_LEG(sps_Sigma_3_in_axes3_xx, sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_xx);
+        KEEP_OF_LEG(sps_Sigma_3_in_axes3_yy, sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_yy);
+        KEEP_OF_LEG(sps_Sigma_3_in_axes3_zz, sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_zz);
         /* (sps-h_group_3) first moments of the links that turn with link 3 */
-        const real sps_h_group_3_in_axes3_x = sps_h_3_in_spec3_y + sps_h_4_in_spec3_y;
-        const real sps_h_group_3_in_axes3_y = sps_h_3_in_spec3_z + sps_h_4_in_spec3_z;
-        const real sps_h_group_3_in_axes3_z = sps_h_3_in_spec3_x + sps_h_4_in_spec3_x;
+        KEEP_OF_LEG(sps_h_group_3_in_axes3_x, sps_h_3_in_spec3_y + sps_h_4_in_spec3_y);
+        KEEP_OF_LEG(sps_h_group_3_in_axes3_y, sps_h_3_in_spec3_z + sps_h_4_in_spec3_z);
+        KEEP_OF_LEG(sps_h_group_3_in_axes3_z, sps_h_3_in_spec3_x + sps_h_4_in_spec3_x);
         /* (h_star) */
         const real sps_h_star_t = sps_link4_mass*sps_platform_point_x;
         const real sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y;
@@ -781,127 +787,66 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_J_star_t_9 = sps_link4_mass*sps_platform_point_y*sps_platform_point_z;
         const real sps_J_star_t_10 = sps_link4_mass*(sps_J_star_t_3 - sps_J_star_t_4);
         /* (potential) potential energy */
-        const real sps_potential_t = gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx +
-            gravity_z*sps_base_frame_zx;
-        const real sps_potential_t_2 = gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy +
-            gravity_z*sps_base_frame_zy;
-        const real sps_potential_t_3 = gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz +
-            gravity_z*sps_base_frame_zz;
-        const real sps_potential_t_4 = sps_base_frame_xx*sps_base_point_x +
-            sps_base_frame_yx*sps_base_point_y + sps_base_frame_zx*sps_base_point_z;
-        const real sps_potential_t_5 = sps_base_frame_xy*sps_base_point_x +
-            sps_base_frame_yy*sps_base_point_y + sps_base_frame_zy*sps_base_point_z;
-        const real sps_potential_t_6 = sps_base_frame_xz*sps_base_point_x +
-            sps_base_frame_yz*sps_base_point_y + sps_base_frame_zz*sps_base_point_z;
-        KEEP_OF_LEG(sps_J_group_3_in_axes3_xx);
-        KEEP_OF_LEG(sps_J_group_3_in_axes3_xy);
-        KEEP_OF_LEG(sps_J_group_3_in_axes3_xz);
-        KEEP_OF_LEG(sps_J_group_3_in_axes3_yy);
-        KEEP_OF_LEG(sps_J_group_3_in_axes3_yz);
-        KEEP_OF_LEG(sps_J_group_3_in_axes3_zz);
-        KEEP_OF_LEG(sps_Sigma_3_in_axes3_xx);
-        KEEP_OF_LEG(sps_Sigma_3_in_axes3_yy);
-        KEEP_OF_LEG(sps_Sigma_3_in_axes3_zz);
-        KEEP_OF_LEG(sps_base_frame_xx);
-        KEEP_OF_LEG(sps_base_frame_xy);
-        KEEP_OF_LEG(sps_base_frame_xz);
-        KEEP_OF_LEG(sps_base_frame_yx);
-        KEEP_OF_LEG(sps_base_frame_yy);
-        KEEP_OF_LEG(sps_base_frame_yz);
-        KEEP_OF_LEG(sps_base_frame_zx);
-        KEEP_OF_LEG(sps_base_frame_zy);
-        KEEP_OF_LEG(sps_base_frame_zz);
-        KEEP_OF_LEG(sps_base_point_x);
-        KEEP_OF_LEG(sps_base_point_y);
-        KEEP_OF_LEG(sps_base_point_z);
-        KEEP_OF_LEG(sps_branch_1);
-        KEEP_OF_LEG(sps_branch_2);
-        KEEP_OF_LEG(sps_h_3_in_spec3_x);
-        KEEP_OF_LEG(sps_h_3_in_spec3_y);
-        KEEP_OF_LEG(sps_h_3_in_spec3_z);
-        KEEP_OF_LEG(sps_h_4_in_spec3_x);
-        KEEP_OF_LEG(sps_h_4_in_spec3_y);
-        KEEP_OF_LEG(sps_h_4_in_spec3_z);
-        KEEP_OF_LEG(sps_h_group_3_in_axes3_x);
-        KEEP_OF_LEG(sps_h_group_3_in_axes3_y);
-        KEEP_OF_LEG(sps_h_group_3_in_axes3_z);
-        KEEP_OF_LEG(sps_link3_mass);
-        KEEP_OF_LEG(sps_link4_mass);
-        KEEP_OF_LEG(sps_platform_point_x);
-        KEEP_OF_LEG(sps_platform_point_y);
-        KEEP_OF_LEG(sps_platform_point_z);
-        KEEP_OF_LEG(sps_potential_t);
-        KEEP_OF_LEG(sps_potential_t_2);
-        KEEP_OF_LEG(sps_potential_t_3);
-        KEEP_OF_LEG(sps_potential_t_4);
-        KEEP_OF_LEG(sps_potential_t_5);
-        KEEP_OF_LEG(sps_potential_t_6);
-        m_star_of_legs += leg < LEGS_OF_sps ? sps_link4_mass : 0;
-        h_star_in_platform_x_of_legs += leg < LEGS_OF_sps ? sps_h_star_t : 0;
-        h_star_in_platform_y_of_legs += leg < LEGS_OF_sps ? sps_h_star_t_2 : 0;
-        h_star_in_platform_z_of_legs += leg < LEGS_OF_sps ? sps_h_star_t_3 : 0;
-        J_star_in_platform_xx_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_5 : 0;
-        J_star_in_platform_xy_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_6 : 0;
-        J_star_in_platform_xz_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_7 : 0;
-        J_star_in_platform_yy_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_8 : 0;
-        J_star_in_platform_yz_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_9 : 0;
-        J_star_in_platform_zz_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_10 : 0;
-        b_c_sps_in_platform_x += leg < LEGS_OF_sps ? sps_platform_point_x : 0;
-        b_c_sps_in_platform_y += leg < LEGS_OF_sps ? sps_platform_point_y : 0;
-        b_c_sps_in_platform_z += leg < LEGS_OF_sps ? sps_platform_point_z : 0;
+        KEEP_OF_LEG(sps_potential_t, gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx +
+            gravity_z*sps_base_frame_zx);
+        KEEP_OF_LEG(sps_potential_t_2, gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy +
+            gravity_z*sps_base_frame_zy);
+        KEEP_OF_LEG(sps_potential_t_3, gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz +
+            gravity_z*sps_base_frame_zz);
+        KEEP_OF_LEG(sps_potential_t_4, sps_base_frame_xx*sps_base_point_x +
+            sps_base_frame_yx*sps_base_point_y + sps_base_frame_zx*sps_base_point_z);
+        KEEP_OF_LEG(sps_potential_t_5, sps_base_frame_xy*sps_base_point_x +
+            sps_base_frame_yy*sps_base_point_y + sps_base_frame_zy*sps_base_point_z);
+        KEEP_OF_LEG(sps_potential_t_6, sps_base_frame_xz*sps_base_point_x +
+            sps_base_frame_yz*sps_base_point_y + sps_base_frame_zz*sps_base_point_z);
+        if (leg < LEGS_OF_sps) {
+            m_star_of_legs += sps_link4_mass;
+            h_star_in_platform_x_of_legs += sps_h_star_t;
+            h_star_in_platform_y_of_legs += sps_h_star_t_2;
+            h_star_in_platform_z_of_legs += sps_h_star_t_3;
+            J_star_in_platform_xx_of_legs += -sps_J_star_t_5;
+            J_star_in_platform_xy_of_legs += -sps_J_star_t_6;
+            J_star_in_platform_xz_of_legs += -sps_J_star_t_7;
+            J_star_in_platform_yy_of_legs += -sps_J_star_t_8;
+            J_star_in_platform_yz_of_legs += -sps_J_star_t_9;
+            J_star_in_platform_zz_of_legs += -sps_J_star_t_10;
+            b_c_sps_in_platform_x += sps_platform_point_x;
+            b_c_sps_in_platform_y += sps_platform_point_y;
+            b_c_sps_in_platform_z += sps_platform_point_z;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
-    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
+    KEEP(h_star_in_platform_x, h_star_in_platform_x_of_legs + h_star_t);
+    KEEP(h_star_in_platform_y, h_star_in_platform_y_of_legs + h_star_t_2);
+    KEEP(h_star_in_platform_z, h_star_in_platform_z_of_legs + h_star_t_3);
     /* (J_star) */
-    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
-        J_star_t_5;
-    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
-        J_star_t_6;
-    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
-        J_star_t_7;
-    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
-        J_star_t_8;
-    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
-        J_star_t_9;
-    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
-        J_star_t_10;
+    KEEP(J_star_in_platform_xx, J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5);
+    KEEP(J_star_in_platform_xy, J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6);
+    KEEP(J_star_in_platform_xz, J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7);
+    KEEP(J_star_in_platform_yy, J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8);
+    KEEP(J_star_in_platform_yz, J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9);
+    KEEP(J_star_in_platform_zz, J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10);
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    KEEP(J_star_t_12, R(0.5)*J_star_t_11);
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_14 = R(0.5)*J_star_t_13;
-    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_14, R(0.5)*J_star_t_13);
+    KEEP(J_star_t_15, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*m_star;
-    const real Z_p_t_2 = gravity_y*m_star;
-    const real Z_p_t_3 = gravity_z*m_star;
+    KEEP(Z_p_t, gravity_x*m_star);
+    KEEP(Z_p_t_2, gravity_y*m_star);
+    KEEP(Z_p_t_3, gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_sps_in_platform_x;
-    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_sps_in_platform_y;
-    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_sps_in_platform_z;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_12);
-    KEEP(J_star_t_14);
-    KEEP(J_star_t_15);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.16666666666666666)*b_c_sps_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.16666666666666666)*b_c_sps_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.16666666666666666)*b_c_sps_in_platform_z);
     return OK;
 }
 
@@ -1640,14 +1585,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1686,7 +1631,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1854,7 +1799,7 @@ INLINE void stage_sps_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real sps_S_dot_y = t_dot_y + v->sps_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
     const real sps_S_dot_z = t_dot_z + v->sps_S_dot_t_3;
-    /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    /* (sps-S_dot_rest) */
     const real sps_S_dot_rest_in_axes3_x = v->axis_x_sps_axes3_x*sps_S_dot_x +
         v->axis_x_sps_axes3_y*sps_S_dot_y + v->axis_x_sps_axes3_z*sps_S_dot_z;
     const real sps_S_dot_rest_in_axes3_y = v->axis_y_sps_axes3_x*sps_S_dot_x +
@@ -1902,7 +1847,7 @@ INLINE void stage_sps_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         sps_bias_t*sps_omega_2_in_axes3_x;
     /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
     v->sps_phi_4_t = v->sps_W_3_t_3*m->sps_h_4_in_spec3_x[i];
-    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (sps-mu_3) */
     const real sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
     v->sps_mu_3_t_2 = m->sps_J_group_3_in_axes3_yz[i]*(sps_W_3_t_2 - sps_mu_3_t);
     v->sps_mu_3_t_3 = m->sps_J_group_3_in_axes3_xz[i]*(sps_W_3_t - sps_mu_3_t);
@@ -1953,7 +1898,7 @@ INLINE void stage_sps_A_V_X(size_t w, size_t j, const real *s, const real *A, va
 
 INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
 {
-    /* (sps-w_1) reciprocal vector 1 */
+    /* (sps-w_1) */
     const real sps_w_1_in_axes3_x = v->inv_sps_w_1_t*v->sps_v_2_t;
     const real sps_w_1_in_axes3_y = v->inv_sps_w_1_t*v->sps_v_2_in_axes3_x;
     /* (sps-w_2) reciprocal vector 2 */
@@ -2205,10 +2150,10 @@ INLINE void stage_sps_legs_required(const prepared *m, size_t w, size_t i, size_
     const real sps_B_3_in_axes3_yz = v->sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
     const real sps_B_3_in_axes3_zx = v->sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
     const real sps_B_3_in_axes3_zy = v->sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
-    /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
+    /* (sps-phi_4) */
     v->sps_phi_4_in_axes3_z = sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] - v->sps_phi_4_t +
         sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
-    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    /* (sps-mu_3) */
     const real sps_mu_3_in_axes3_x = v->sps_S_ddot_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
         v->sps_S_ddot_in_axes3_y*m->sps_h_4_in_spec3_x[i] - v->sps_mu_3_t_5 + v->sps_mu_3_t_2
         + sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
@@ -2232,8 +2177,7 @@ INLINE void stage_sps_legs_required(const prepared *m, size_t w, size_t i, size_
     /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
     const real sps_Gamma_1 = v->sps_e_1_in_axes2_y*v->sps_mu_3_in_axes3_z +
         v->sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + v->sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y;
-    /* (sps-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (sps-c) */
     v->sps_c_in_axes3_x = v->sps_c_t - sps_B_3_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
         sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
         v->inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v->sps_v_1_in_axes3_y +
@@ -2278,7 +2222,7 @@ INLINE void any_sums_sps(size_t k, size_t count, int add, const values_sps *v, r
     gather(&terms[3*count + k], add, v->sps_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->sps_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->sps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->sps_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, -v->sps_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->sps_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2287,7 +2231,7 @@ INLINE void any_sums_sps(size_t k, size_t count, int add, const values_sps *v, r
     gather(&terms[11*count + k], add, v->sps_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->sps_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->sps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->sps_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->sps_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->sps_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2302,31 +2246,23 @@ INLINE void any_sums_sps_2(size_t k, size_t count, int add, const values_sps *v,
     gather(&terms[0*count + k], add, v->sps_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->sps_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->sps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->sps_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->sps_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->sps_Z_a_t_3);  /* Z_a_z_of_legs */
 }
 
-INLINE void any_entries_sps(size_t k, size_t count, const values_sps *v, real *o)
+INLINE void any_entries_sps(const prepared *m, size_t i, size_t k, size_t count, const values_sps
+    *v, real *o)
 {
-    /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-       joint 3 */
-    o[0*count + k] = v->sps_mu_3_o_in_axes3_z;
-}
-
-INLINE void any_entries_sps_2(const prepared *m, size_t i, size_t k, size_t count, const
-    values_sps *v, real *o)
-{
-    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 3 */
+    /* (sps-d_P_3) */
     o[0*count + k] = v->sps_d_P_3_x;
     o[1*count + k] = v->sps_d_P_3_x;
     o[2*count + k] = v->sps_d_P_3_y;
     o[3*count + k] = v->sps_d_P_3_y;
     o[4*count + k] = v->sps_d_P_3_z;
     o[5*count + k] = v->sps_d_P_3_z;
-    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
+    /* (sps-M_ya_3) */
     o[6*count + k] = v->sps_M_ya_3_x;
     o[7*count + k] = v->sps_M_ya_3_x;
     o[8*count + k] = v->sps_M_ya_3_y;
@@ -2338,16 +2274,146 @@ INLINE void any_entries_sps_2(const prepared *m, size_t i, size_t k, size_t coun
     o[12*count + k] = m->sps_J_group_3_in_axes3_zz[i];
 }
 
-INLINE void any_entries_sps_3(size_t k, size_t count, const values_sps *v, real *o)
+INLINE void any_entries_sps_2(size_t k, size_t count, const values_sps *v, real *o)
 {
-    /* (sps-w_4) reciprocal vector 3 */
+    /* (sps-w_4) */
     o[0*count + k] = v->sps_w_4_x;
     o[1*count + k] = v->sps_w_4_y;
     o[2*count + k] = v->sps_w_4_z;
-    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+    /* (sps-H_a_4) */
     o[3*count + k] = v->sps_H_a_4_x;
     o[4*count + k] = v->sps_H_a_4_y;
     o[5*count + k] = v->sps_H_a_4_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
@@ -2418,9 +2484,11 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     stage_sps_Z_dynamics(m, w, i, j, V, &v);
     any_sums_sps(k, count, add, &v, terms);
     any_sums_sps_2(k, count, add, &v, terms + 20*count);
-    any_entries_sps(k, count, &v, o);
-    any_entries_sps_2(m, i, k, count, &v, o + 1*count);
-    any_entries_sps_3(k, count, &v, o + 14*count);
+    /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 3 */
+    o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
+    any_entries_sps(m, i, k, count, &v, o + 1*count);
+    any_entries_sps_2(k, count, &v, o + 14*count);
     o[20*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
@@ -2460,125 +2528,8 @@ INLINE void dynamics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
@@ -2645,7 +2596,7 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_sps_X(m, w, i, j, s, X, &v);
     stage_sps_M_dynamics(m, i, &v);
     any_sums_sps(k, count, add, &v, terms);
-    any_entries_sps_2(m, i, k, count, &v, o);
+    any_entries_sps(m, i, k, count, &v, o);
     o[13*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
@@ -2676,97 +2627,7 @@ INLINE void M_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
@@ -2792,7 +2653,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2840,7 +2701,8 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_Z_dynamics(m, w, i, j, V, &v);
     any_sums_sps_2(k, count, add, &v, terms);
-    any_entries_sps(k, count, &v, o);
+    /* (sps-P_3_o) */
+    o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
     o[1*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
@@ -2857,35 +2719,7 @@ INLINE void Z_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2911,7 +2745,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2945,7 +2779,7 @@ INLINE void H_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    any_entries_sps_3(k, count, &v, o);
+    any_entries_sps_2(k, count, &v, o);
     o[6*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
     o[7*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + (v.sps_H_a_4_x +
@@ -3081,19 +2915,18 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_A_V_X(w, j, s, A, &v);
     stage_sps_legs_required(m, w, i, j, A, &v);
-    /* (sps-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (sps-c) */
     const real sps_c_x = v.axis_x_sps_axes3_x*v.sps_c_in_axes3_x -
         v.sps_phi_4_in_axes3_z*v.sps_w_4_x + v.axis_y_sps_axes3_x*v.sps_c_in_axes3_y;
     const real sps_c_y = v.axis_x_sps_axes3_y*v.sps_c_in_axes3_x -
         v.sps_phi_4_in_axes3_z*v.sps_w_4_y + v.axis_y_sps_axes3_y*v.sps_c_in_axes3_y;
     const real sps_c_z = v.axis_x_sps_axes3_z*v.sps_c_in_axes3_x -
         v.sps_phi_4_in_axes3_z*v.sps_w_4_z + v.axis_y_sps_axes3_z*v.sps_c_in_axes3_y;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real sps_R_a_t = sps_c_y*v.sps_q_z - sps_c_z*v.sps_q_y;
     const real sps_R_a_t_2 = sps_c_z*v.sps_q_x - sps_c_x*v.sps_q_z;
     const real sps_R_a_t_3 = sps_c_x*v.sps_q_y - sps_c_y*v.sps_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, sps_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, sps_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, sps_c_z);  /* R_t_z_of_legs */
@@ -3103,7 +2936,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[5*count + k], add, sps_R_a_t_3);  /* R_a_z_of_legs */
     /* (sps-P_3) inertia and weight of the leg along the extra degree of freedom of joint 3 */
     o[0*count + k] = v.sps_mu_3_in_axes3_z;
-    any_entries_sps_3(k, count, &v, o + 1*count);
+    any_entries_sps_2(k, count, &v, o + 1*count);
     o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
@@ -3124,7 +2957,7 @@ INLINE void required_place_sps(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3134,7 +2967,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3182,8 +3015,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_sps[8*LANES];
@@ -3220,13 +3053,13 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t i, s
     stage_sps_X(m, w, i, j, s, X, &v);
     /* (sps-q_1) displacement of joint 1 */
     const real sps_q_1 = angle(v.sps_s_1, v.sps_c_1);
-    /* (sps-q_2) displacement of joint 2 */
+    /* (sps-q_2) */
     const real sps_q_2 = angle(-v.sps_e_1_in_axes2_y, v.sps_c_2);
     /* (sps-q_1) */
     o[0*count + k] = sps_q_1;
     /* (sps-q_2) */
     o[1*count + k] = sps_q_2;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
     o[2*count + k] = sps_y_3_extra;
     /* (sps-q_4) displacement of joint 4 */
@@ -3294,11 +3127,11 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
     stage_sps_V_X(m, w, i, j, V, &v);
-    /* (sps-qd_1) rate of joint 1 */
+    /* (sps-qd_1) */
     o[0*count + k] = v.sps_qd_1;
-    /* (sps-qd_2) rate of joint 2 */
+    /* (sps-qd_2) */
     o[1*count + k] = -v.sps_qd_2_t;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
     o[2*count + k] = sps_yd_3;
     /* (sps-qd_4) rate of joint 4 */
@@ -3369,13 +3202,13 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, 
     stage_sps_X(m, w, i, j, s, X, &v);
     stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_A_V_X(w, j, s, A, &v);
-    /* (sps-rel) acceleration of the connection point left to the joint accelerations */
+    /* (sps-rel) */
     const real sps_rel_in_axes3_z = v.sps_S_ddot_in_axes3_z + v.sps_W_3_t_3*v.sps_root_2;
-    /* (sps-qdd_1) acceleration of joint 1 */
+    /* (sps-qdd_1) */
     o[0*count + k] = v.sps_qdd_1;
-    /* (sps-qdd_2) acceleration of joint 2 */
+    /* (sps-qdd_2) */
     o[1*count + k] = -v.sps_qdd_2_t;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
     o[2*count + k] = sps_ydd_3;
     /* (sps-qdd_4) acceleration of joint 4 */
@@ -3446,7 +3279,7 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_A_V_X(w, j, s, A, &v);
     stage_sps_legs_required(m, w, i, j, A, &v);
-    /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+    /* (sps-acc_4) */
     const real sps_acc_4_in_axes3_x = v.sps_S_ddot_in_axes3_x - v.sps_g_in_axes3_x;
     const real sps_acc_4_in_axes3_y = v.sps_S_ddot_in_axes3_y - v.sps_g_in_axes3_y;
     const real sps_acc_4_in_axes3_z = v.sps_S_ddot_in_axes3_z - v.sps_g_in_axes3_z;
@@ -3470,7 +3303,7 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = sps_c_true_x;
     o[1*count + k] = sps_c_true_y;
     o[2*count + k] = sps_c_true_z;
-    /* (sps-w_4) reciprocal vector 3 */
+    /* (sps-w_4) */
     o[3*count + k] = v.sps_w_4_x;
     o[4*count + k] = v.sps_w_4_y;
     o[5*count + k] = v.sps_w_4_z;
@@ -3515,7 +3348,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3613,7 +3446,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3639,7 +3472,7 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
         sps_spread_t_3*sps_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, sps_spread_t_4);  /* spread_sps */
-    any_entries_sps_3(k, count, &v, o);
+    any_entries_sps_2(k, count, &v, o);
     /* (sps-G) */
     o[6*count + k] = sps_least_pivots;
     o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
@@ -3666,7 +3499,7 @@ INLINE void condition_place_sps(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_sps = sums[0*w + k];
     const real spread_ = root(spread_sps)*m->spread_t;
     /* (spread) */

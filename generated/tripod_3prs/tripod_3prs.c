@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && TRIPOD_3PRS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3PRS_LANES >= 4 && VECTORS_OF(TRIPOD_3PRS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -273,11 +290,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -286,10 +305,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -391,11 +411,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -603,8 +620,9 @@ static int acceptable(const tripod_3prs_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *model)
 {
@@ -616,10 +634,10 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     real b_c_prs_in_platform_y = 0;
     real b_c_prs_in_platform_z = 0;
     real legs_size_prs = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
-    const real platform_mass = params->platform_mass;
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
+    KEEP(platform_mass, params->platform_mass);
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_centre_of_mass_z = params->platform_centre_of_mass[2];
@@ -630,181 +648,121 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = platform_centre_of_mass_x*platform_mass;
-    const real h_star_in_platform_y = platform_centre_of_mass_y*platform_mass;
-    const real h_star_in_platform_z = platform_centre_of_mass_z*platform_mass;
+    KEEP(h_star_in_platform_x, platform_centre_of_mass_x*platform_mass);
+    KEEP(h_star_in_platform_y, platform_centre_of_mass_y*platform_mass);
+    KEEP(h_star_in_platform_z, platform_centre_of_mass_z*platform_mass);
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
     const real J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3;
-    const real J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t -
-        J_star_t_4);
-    const real J_star_in_platform_xy = platform_inertia_xy -
-        platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass;
-    const real J_star_in_platform_xz = platform_inertia_xz -
-        platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass;
-    const real J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 -
-        J_star_t_4);
-    const real J_star_in_platform_yz = platform_inertia_yz -
-        platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
-    const real J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 -
-        J_star_t_4);
+    KEEP(J_star_in_platform_xx, platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4));
+    KEEP(J_star_in_platform_xy, platform_inertia_xy -
+        platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass);
+    KEEP(J_star_in_platform_xz, platform_inertia_xz -
+        platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass);
+    KEEP(J_star_in_platform_yy, platform_inertia_yy - platform_mass*(J_star_t_2 -
+        J_star_t_4));
+    KEEP(J_star_in_platform_yz, platform_inertia_yz -
+        platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass);
+    KEEP(J_star_in_platform_zz, platform_inertia_zz - platform_mass*(J_star_t_3 -
+        J_star_t_4));
     const real J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_6 = R(0.5)*J_star_t_5;
+    KEEP(J_star_t_6, R(0.5)*J_star_t_5);
     const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_8 = R(0.5)*J_star_t_7;
-    const real J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_8, R(0.5)*J_star_t_7);
+    KEEP(J_star_t_9, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*platform_mass;
-    const real Z_p_t_2 = gravity_y*platform_mass;
-    const real Z_p_t_3 = gravity_z*platform_mass;
+    KEEP(Z_p_t, gravity_x*platform_mass);
+    KEEP(Z_p_t_2, gravity_y*platform_mass);
+    KEEP(Z_p_t_3, gravity_z*platform_mass);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_6);
-    KEEP(J_star_t_8);
-    KEEP(J_star_t_9);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(platform_mass);
-    KEEP(spread_t);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     for (size_t leg = 0; leg < FILLED(LEGS_OF_prs); ++leg) {
         const size_t own = leg < LEGS_OF_prs ? leg : 0;
-        const real prs_base_point_x = params->prs_base_point[own][0];
-        const real prs_base_point_y = params->prs_base_point[own][1];
-        const real prs_base_point_z = params->prs_base_point[own][2];
-        const real prs_base_frame_xx = params->prs_base_frame[own][0][0];
-        const real prs_base_frame_xy = params->prs_base_frame[own][0][1];
-        const real prs_base_frame_xz = params->prs_base_frame[own][0][2];
-        const real prs_base_frame_yx = params->prs_base_frame[own][1][0];
-        const real prs_base_frame_yy = params->prs_base_frame[own][1][1];
-        const real prs_base_frame_yz = params->prs_base_frame[own][1][2];
-        const real prs_base_frame_zx = params->prs_base_frame[own][2][0];
-        const real prs_base_frame_zy = params->prs_base_frame[own][2][1];
-        const real prs_base_frame_zz = params->prs_base_frame[own][2][2];
-        const real prs_platform_point_x = params->prs_platform_point[own][0];
-        const real prs_platform_point_y = params->prs_platform_point[own][1];
-        const real prs_platform_point_z = params->prs_platform_point[own][2];
-        const real prs_platform_joint_offset_x = params->prs_platform_joint_offset[own][0];
-        const real prs_link1_mass = params->prs_link1_mass[own];
+        KEEP_OF_LEG(prs_base_point_x, params->prs_base_point[own][0]);
+        KEEP_OF_LEG(prs_base_point_y, params->prs_base_point[own][1]);
+        KEEP_OF_LEG(prs_base_point_z, params->prs_base_point[own][2]);
+        KEEP_OF_LEG(prs_base_frame_xx, params->prs_base_frame[own][0][0]);
+        KEEP_OF_LEG(prs_base_frame_xy, params->prs_base_frame[own][0][1]);
+        KEEP_OF_LEG(prs_base_frame_xz, params->prs_base_frame[own][0][2]);
+        KEEP_OF_LEG(prs_base_frame_yx, params->prs_base_frame[own][1][0]);
+        KEEP_OF_LEG(prs_base_frame_yy, params->prs_base_frame[own][1][1]);
+        KEEP_OF_LEG(prs_base_frame_yz, params->prs_base_frame[own][1][2]);
+        KEEP_OF_LEG(prs_base_frame_zx, params->prs_base_frame[own][2][0]);
+        KEEP_OF_LEG(prs_base_frame_zy, params->prs_base_frame[own][2][1]);
+        KEEP_OF_LEG(prs_base_frame_zz, params->prs_base_frame[own][2][2]);
+        KEEP_OF_LEG(prs_platform_point_x, params->prs_platform_point[own][0]);
+        KEEP_OF_LEG(prs_platform_point_y, params->prs_platform_point[own][1]);
+        KEEP_OF_LEG(prs_platform_point_z, params->prs_platform_point[own][2]);
+        KEEP_OF_LEG(prs_platform_joint_offset_x, params->prs_platform_joint_offset[own][0]);
+        KEEP_OF_LEG(prs_link1_mass, params->prs_link1_mass[own]);
         const real prs_link1_centre_of_mass_x = params->prs_link1_centre_of_mass[own][0];
         const real prs_link1_centre_of_mass_y = params->prs_link1_centre_of_mass[own][1];
         const real prs_link1_centre_of_mass_z = params->prs_link1_centre_of_mass[own][2];
-        const real prs_link2_mass = params->prs_link2_mass[own];
+        KEEP_OF_LEG(prs_link2_mass, params->prs_link2_mass[own]);
         const real prs_link2_centre_of_mass_x = params->prs_link2_centre_of_mass[own][0];
         const real prs_link2_centre_of_mass_y = params->prs_link2_centre_of_mass[own][1];
         const real prs_link2_centre_of_mass_z = params->prs_link2_centre_of_mass[own][2];
         const real prs_link2_inertia_zz = params->prs_link2_inertia[own][2][2];
         static const signed char signs_prs_branch_1[] = {-1, -1, -1};
-        const real prs_branch_1 = signs_prs_branch_1[own];
+        KEEP_OF_LEG(prs_branch_1, signs_prs_branch_1[own]);
         /* (prs-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prs_size_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
+        KEEP_OF_LEG(prs_size_t, prs_platform_joint_offset_x*prs_platform_joint_offset_x);
         const real prs_size_t_2 = R(3.5999999999999994e-07) + prs_size_t;
-        const real prs_size = root(prs_size_t_2);
+        KEEP_OF_LEG(prs_size, root(prs_size_t_2));
         /* (prs-h_1) first moment of link 1 about the origin of link 1 */
-        const real prs_h_1_in_spec0_x = prs_link1_centre_of_mass_x*prs_link1_mass;
-        const real prs_h_1_in_spec0_y = prs_link1_centre_of_mass_y*prs_link1_mass;
+        KEEP_OF_LEG(prs_h_1_in_spec0_x, prs_link1_centre_of_mass_x*prs_link1_mass);
+        KEEP_OF_LEG(prs_h_1_in_spec0_y, prs_link1_centre_of_mass_y*prs_link1_mass);
         /* (prs-h_2) first moment of link 2 about the origin of link 2 */
-        const real prs_h_2_in_spec2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
-        const real prs_h_2_in_spec2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
+        KEEP_OF_LEG(prs_h_2_in_spec2_x, prs_link2_centre_of_mass_x*prs_link2_mass);
+        KEEP_OF_LEG(prs_h_2_in_spec2_y, prs_link2_centre_of_mass_y*prs_link2_mass);
         /* (prs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real prs_J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z;
         const real prs_J_2_t_2 = prs_J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x
             + prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y;
-        const real prs_J_2_in_spec2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t -
-            prs_J_2_t_2);
+        KEEP_OF_LEG(prs_J_2_in_spec2_zz, prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t -
+            prs_J_2_t_2));
         /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
-        const real prs_root_2_t = prs_size*prs_size*prs_size_t_2;
+        KEEP_OF_LEG(prs_root_2_t, prs_size*prs_size*prs_size_t_2);
         /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prs_g_in_axes0_x = gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
-            gravity_z*prs_base_frame_zx;
+        KEEP_OF_LEG(prs_g_in_axes0_x, gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
+            gravity_z*prs_base_frame_zx);
         /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prs_g_in_axes0_y = gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
-            gravity_z*prs_base_frame_zy;
+        KEEP_OF_LEG(prs_g_in_axes0_y, gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
+            gravity_z*prs_base_frame_zy);
         /* (prs-P_c_1) force that accelerates joint 1, per unit */
-        const real prs_P_c_1_in_axes0_x = prs_link1_mass + prs_link2_mass;
+        KEEP_OF_LEG(prs_P_c_1_in_axes0_x, prs_link1_mass + prs_link2_mass);
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real inv_prs_root_2_t = 1/prs_root_2_t;
-        const real inv_prs_size = 1/prs_size;
+        KEEP_OF_LEG(inv_prs_root_2_t, 1/prs_root_2_t);
+        KEEP_OF_LEG(inv_prs_size, 1/prs_size);
         /* (potential) potential energy */
-        const real prs_b_in_axes0_x = prs_base_frame_xx*prs_base_point_x +
-            prs_base_frame_yx*prs_base_point_y + prs_base_frame_zx*prs_base_point_z;
+        KEEP_OF_LEG(prs_b_in_axes0_x, prs_base_frame_xx*prs_base_point_x +
+            prs_base_frame_yx*prs_base_point_y + prs_base_frame_zx*prs_base_point_z);
         const real prs_b_in_axes0_y = prs_base_frame_xy*prs_base_point_x +
             prs_base_frame_yy*prs_base_point_y + prs_base_frame_zy*prs_base_point_z;
         const real prs_b_in_axes0_z = prs_base_frame_xz*prs_base_point_x +
             prs_base_frame_yz*prs_base_point_y + prs_base_frame_zz*prs_base_point_z;
-        const real prs_potential_t = prs_b_in_axes0_y*prs_link1_mass;
-        const real prs_potential_t_2 = prs_b_in_axes0_y*prs_link2_mass;
-        const real prs_potential_t_3 = (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz
+        KEEP_OF_LEG(prs_potential_t, prs_b_in_axes0_y*prs_link1_mass);
+        KEEP_OF_LEG(prs_potential_t_2, prs_b_in_axes0_y*prs_link2_mass);
+        KEEP_OF_LEG(prs_potential_t_3, (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz
             + gravity_z*prs_base_frame_zz)*(prs_b_in_axes0_z*prs_link1_mass +
             prs_b_in_axes0_z*prs_link2_mass + prs_link1_centre_of_mass_z*prs_link1_mass +
-            prs_link2_centre_of_mass_z*prs_link2_mass);
-        KEEP_OF_LEG(inv_prs_root_2_t);
-        KEEP_OF_LEG(inv_prs_size);
-        KEEP_OF_LEG(prs_J_2_in_spec2_zz);
-        KEEP_OF_LEG(prs_P_c_1_in_axes0_x);
-        KEEP_OF_LEG(prs_b_in_axes0_x);
-        KEEP_OF_LEG(prs_base_frame_xx);
-        KEEP_OF_LEG(prs_base_frame_xy);
-        KEEP_OF_LEG(prs_base_frame_xz);
-        KEEP_OF_LEG(prs_base_frame_yx);
-        KEEP_OF_LEG(prs_base_frame_yy);
-        KEEP_OF_LEG(prs_base_frame_yz);
-        KEEP_OF_LEG(prs_base_frame_zx);
-        KEEP_OF_LEG(prs_base_frame_zy);
-        KEEP_OF_LEG(prs_base_frame_zz);
-        KEEP_OF_LEG(prs_base_point_x);
-        KEEP_OF_LEG(prs_base_point_y);
-        KEEP_OF_LEG(prs_base_point_z);
-        KEEP_OF_LEG(prs_branch_1);
-        KEEP_OF_LEG(prs_g_in_axes0_x);
-        KEEP_OF_LEG(prs_g_in_axes0_y);
-        KEEP_OF_LEG(prs_h_1_in_spec0_x);
-        KEEP_OF_LEG(prs_h_1_in_spec0_y);
-        KEEP_OF_LEG(prs_h_2_in_spec2_x);
-        KEEP_OF_LEG(prs_h_2_in_spec2_y);
-        KEEP_OF_LEG(prs_link1_mass);
-        KEEP_OF_LEG(prs_link2_mass);
-        KEEP_OF_LEG(prs_platform_joint_offset_x);
-        KEEP_OF_LEG(prs_platform_point_x);
-        KEEP_OF_LEG(prs_platform_point_y);
-        KEEP_OF_LEG(prs_platform_point_z);
-        KEEP_OF_LEG(prs_potential_t);
-        KEEP_OF_LEG(prs_potential_t_2);
-        KEEP_OF_LEG(prs_potential_t_3);
-        KEEP_OF_LEG(prs_root_2_t);
-        KEEP_OF_LEG(prs_size);
-        KEEP_OF_LEG(prs_size_t);
-        b_c_prs_in_platform_x += leg < LEGS_OF_prs ? prs_platform_point_x : 0;
-        b_c_prs_in_platform_y += leg < LEGS_OF_prs ? prs_platform_point_y : 0;
-        b_c_prs_in_platform_z += leg < LEGS_OF_prs ? prs_platform_point_z : 0;
-        legs_size_prs += leg < LEGS_OF_prs ? prs_size_t_2 : 0;
+            prs_link2_centre_of_mass_z*prs_link2_mass));
+        if (leg < LEGS_OF_prs) {
+            b_c_prs_in_platform_x += prs_platform_point_x;
+            b_c_prs_in_platform_y += prs_platform_point_y;
+            b_c_prs_in_platform_z += prs_platform_point_z;
+            legs_size_prs += prs_size_t_2;
+        }
     }
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prs_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prs_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_prs_in_platform_z;
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_prs_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_prs_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_prs_in_platform_z);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(legs_size_prs)*spread_t;
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(legs_size);
+    KEEP(legs_size, root(legs_size_prs)*spread_t);
     return OK;
 }
 
@@ -1607,14 +1565,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1653,7 +1611,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1760,7 +1718,7 @@ INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_prs_axes2_y*v->prs_w_1_in_axes2_y;
     v->prs_w_1_z = v->axis_x_prs_axes2_z*v->prs_w_1_in_axes2_x +
         v->axis_y_prs_axes2_z*v->prs_w_1_in_axes2_y;
-    /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (prs-acc_2) */
     v->prs_g_in_axes2_x = v->prs_c_2*m->prs_g_in_axes0_x[i] +
         m->prs_g_in_axes0_y[i]*v->prs_s_2;
     v->prs_g_in_axes2_y = v->prs_c_2*m->prs_g_in_axes0_y[i] -
@@ -1918,7 +1876,7 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
 
 INLINE void stage_prs_Z_dynamics(const prepared *m, size_t i, values_prs *v)
 {
-    /* (prs-u_1) centripetal acceleration of the connection point */
+    /* (prs-u_1) */
     const real prs_u_1_in_axes2_y = v->axis_y_prs_axes2_x*v->prs_u_1_x +
         v->axis_y_prs_axes2_y*v->prs_u_1_y + v->axis_y_prs_axes2_z*v->prs_u_1_z;
     /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -1970,7 +1928,7 @@ INLINE void stage_prs_Z_dynamics(const prepared *m, size_t i, values_prs *v)
 
 INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
 {
-    /* (prs-w_1) reciprocal vector 1 */
+    /* (prs-w_1) */
     const real prs_w_1_t_3 = v->prs_c_2*v->prs_w_1_in_axes2_x -
         v->prs_s_2*v->prs_w_1_in_axes2_y;
     const real prs_w_1_t_4 = v->prs_c_2*v->prs_w_1_in_axes2_y +
@@ -1981,12 +1939,12 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
         m->prs_base_frame_yy[i]*prs_w_1_t_4;
     v->prs_w_1_z_2 = m->prs_base_frame_zx[i]*prs_w_1_t_3 +
         m->prs_base_frame_zy[i]*prs_w_1_t_4;
-    /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
+    /* (prs-acc_1) */
     const real prs_acc_1_in_axes0_x = v->prs_qdd_1 - m->prs_g_in_axes0_x[i];
-    /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (prs-acc_2) */
     const real prs_acc_2_in_axes2_x = v->prs_c_2*v->prs_qdd_1 - v->prs_g_in_axes2_x;
     const real prs_acc_2_in_axes2_y = -v->prs_g_in_axes2_y - v->prs_qdd_1*v->prs_s_2;
-    /* (prs-f_2) inertia force of link 2 less its weight */
+    /* (prs-f_2) */
     const real prs_f_2_in_axes2_x = m->prs_h_2_in_spec2_y[i]*v->prs_qdd_1_t - v->prs_f_2_t +
         prs_acc_2_in_axes2_x*m->prs_link2_mass[i];
     const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*m->prs_link2_mass[i] - v->prs_f_2_t_2
@@ -1998,8 +1956,7 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
     /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
     const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*m->prs_link1_mass[i] +
         v->prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*v->prs_s_2;
-    /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (prs-G) */
     const real prs_G_t = v->prs_w_1_t*(prs_mu_2_in_axes2_z -
         prs_T_1_in_axes0_x*v->prs_v_2_in_axes0_x);
     const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*v->prs_c_2 - prs_G_t*v->prs_s_2;
@@ -2047,7 +2004,7 @@ INLINE void any_sums_prs(size_t k, size_t count, int add, const values_prs *v, r
     gather(&terms[3*count + k], add, v->prs_d_c_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->prs_d_c_yz);  /* M_tt_t_5 */
     gather(&terms[5*count + k], add, v->prs_d_c_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->prs_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, -v->prs_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->prs_M_ta_t);  /* M_ta_xy_of_legs */
@@ -2056,7 +2013,7 @@ INLINE void any_sums_prs(size_t k, size_t count, int add, const values_prs *v, r
     gather(&terms[11*count + k], add, v->prs_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->prs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->prs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->prs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->prs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->prs_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2071,7 +2028,7 @@ INLINE void any_sums_prs_2(size_t k, size_t count, int add, const values_prs *v,
     gather(&terms[0*count + k], add, v->prs_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->prs_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->prs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->prs_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->prs_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->prs_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2079,11 +2036,11 @@ INLINE void any_sums_prs_2(size_t k, size_t count, int add, const values_prs *v,
 
 INLINE void any_entries_prs(size_t k, size_t count, const values_prs *v, real *o)
 {
-    /* (prs-w_1) reciprocal vector 1 */
+    /* (prs-w_1) */
     o[0*count + k] = v->prs_w_1_x;
     o[1*count + k] = v->prs_w_1_y;
     o[2*count + k] = v->prs_w_1_z;
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    /* (prs-H_a_1) */
     o[3*count + k] = v->prs_H_a_1_x;
     o[4*count + k] = v->prs_H_a_1_y;
     o[5*count + k] = v->prs_H_a_1_z;
@@ -2092,14 +2049,144 @@ INLINE void any_entries_prs(size_t k, size_t count, const values_prs *v, real *o
 INLINE void any_entries_prs_2(const prepared *m, size_t i, size_t k, size_t count, const
     values_prs *v, real *o)
 {
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     o[0*count + k] = m->prs_base_frame_xz[i];
     o[1*count + k] = m->prs_base_frame_yz[i];
     o[2*count + k] = m->prs_base_frame_zz[i];
-    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    /* (prs-Hk_a_1) */
     o[3*count + k] = v->prs_Hk_a_1_x;
     o[4*count + k] = v->prs_Hk_a_1_y;
     o[5*count + k] = v->prs_Hk_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_t_3 = sums[2*w + k];
+    M[2*w + k] = -M_tt_t_3;
+    M[2*NV*w + k] = -M_tt_t_3;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_t_5 = sums[4*w + k];
+    M[(NV + 2)*w + k] = -M_tt_t_5;
+    M[(2*NV + 1)*w + k] = -M_tt_t_5;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2174,7 +2261,7 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_M_dynamics(m, i, &v);
     stage_prs_Z_dynamics(m, i, &v);
-    /* (prs-u_1) centripetal acceleration of the connection point */
+    /* (prs-u_1) */
     const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*v.prs_u_1_x +
         m->prs_base_frame_yz[i]*v.prs_u_1_y + m->prs_base_frame_zz[i]*v.prs_u_1_z;
     any_sums_prs(k, count, add, &v, terms);
@@ -2217,132 +2304,15 @@ INLINE void dynamics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_t_2 = sums[1*w + k];
-    M[1*w + k] = -M_tt_t_2;
-    M[NV*w + k] = -M_tt_t_2;
-    const real M_tt_t_3 = sums[2*w + k];
-    M[2*w + k] = -M_tt_t_3;
-    M[2*NV*w + k] = -M_tt_t_3;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_t_5 = sums[4*w + k];
-    M[(NV + 2)*w + k] = -M_tt_t_5;
-    M[(2*NV + 1)*w + k] = -M_tt_t_5;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)26)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_prs[SUMS_OF_dynamics*LEGS(LEGS_OF_prs)] CLEARED, o_prs[16*LEGS(LEGS_OF_prs)] CLEARED;
@@ -2407,103 +2377,13 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_t_2 = sums[1*w + k];
-    M[1*w + k] = -M_tt_t_2;
-    M[NV*w + k] = -M_tt_t_2;
-    const real M_tt_t_3 = sums[2*w + k];
-    M[2*w + k] = -M_tt_t_3;
-    M[2*NV*w + k] = -M_tt_t_3;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_t_5 = sums[4*w + k];
-    M[(NV + 2)*w + k] = -M_tt_t_5;
-    M[(2*NV + 1)*w + k] = -M_tt_t_5;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)20)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_prs[SUMS_OF_M*LEGS(LEGS_OF_prs)] CLEARED, o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
@@ -2522,7 +2402,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2576,35 +2456,7 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2630,7 +2482,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2688,7 +2540,7 @@ INLINE void H_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_prs[9*LEGS(LEGS_OF_prs)] CLEARED;
@@ -2750,7 +2602,7 @@ INLINE void Hk_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, 
 
 #define PASSED_IN_Hk ((size_t)18)
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
+NARROW APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
     real s[PASSED_IN_Hk] CLEARED;
     real o_prs[7*LEGS(LEGS_OF_prs)] CLEARED;
@@ -2794,11 +2646,10 @@ INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t i, size
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
-    /* (prs-u_1) centripetal acceleration of the connection point */
+    /* (prs-u_1) */
     const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*v.prs_u_1_x +
         m->prs_base_frame_yz[i]*v.prs_u_1_y + m->prs_base_frame_zz[i]*v.prs_u_1_z;
-    /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (prs-gamma_c1) */
     o[0*count + k] = prs_u_1_in_axes2_z;
     o[1*count + k] = prs_u_1_in_axes2_z;
 }
@@ -2925,15 +2776,15 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_A_V_X(m, w, i, j, s, A, &v);
     stage_prs_legs_required(m, i, &v);
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real prs_R_a_t = v.prs_c_y*v.prs_q_z - v.prs_c_z*v.prs_q_y;
     const real prs_R_a_t_2 = v.prs_c_z*v.prs_q_x - v.prs_c_x*v.prs_q_z;
     const real prs_R_a_t_3 = v.prs_c_x*v.prs_q_y - v.prs_c_y*v.prs_q_x;
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    /* (prs-H_a_1) */
     const real prs_H_a_1_x_2 = v.prs_q_y*v.prs_w_1_z_2 - v.prs_q_z*v.prs_w_1_y_2;
     const real prs_H_a_1_y_2 = v.prs_q_z*v.prs_w_1_x_2 - v.prs_q_x*v.prs_w_1_z_2;
     const real prs_H_a_1_z_2 = v.prs_q_x*v.prs_w_1_y_2 - v.prs_q_y*v.prs_w_1_x_2;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.prs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.prs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, v.prs_c_z);  /* R_t_z_of_legs */
@@ -2941,7 +2792,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, prs_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, prs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, prs_R_a_t_3);  /* R_a_z_of_legs */
-    /* (prs-w_1) reciprocal vector 1 */
+    /* (prs-w_1) */
     o[0*count + k] = v.prs_w_1_x_2;
     o[1*count + k] = v.prs_w_1_y_2;
     o[2*count + k] = v.prs_w_1_z_2;
@@ -2976,7 +2827,7 @@ INLINE void required_place_prs(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2986,7 +2837,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3033,8 +2884,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_prs[14*LANES];
@@ -3067,7 +2918,7 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, s
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    /* (prs-q_1) displacement of joint 1 */
+    /* (prs-q_1) */
     const real prs_q_1 = v.prs_S_in_axes0_x - v.prs_q_1_t;
     /* (prs-q_2) displacement of joint 2 */
     const real prs_q_2 = angle(v.prs_s_2, v.prs_c_2);
@@ -3092,7 +2943,8 @@ INLINE void inverse_kinematics_place_prs(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
@@ -3136,7 +2988,7 @@ INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t i, size_t j
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
-    /* (prs-qd_1) rate of joint 1 */
+    /* (prs-qd_1) */
     const real prs_qd_1 = v.prs_S_dot_x*m->prs_base_frame_xx[i] +
         v.prs_S_dot_y*m->prs_base_frame_yx[i] + v.prs_S_dot_z*m->prs_base_frame_zx[i] +
         v.prs_qd_1_t*v.prs_v_2_in_axes0_x;
@@ -3162,8 +3014,8 @@ INLINE void joint_rates_place_prs(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
@@ -3208,7 +3060,7 @@ INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, 
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_A_V_X(m, w, i, j, s, A, &v);
-    /* (prs-qdd_1) acceleration of joint 1 */
+    /* (prs-qdd_1) */
     o[0*count + k] = v.prs_qdd_1;
     /* (prs-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.prs_qdd_1_t;
@@ -3230,8 +3082,8 @@ INLINE void joint_accelerations_place_prs(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
@@ -3288,7 +3140,8 @@ INLINE void constraints_place_prs(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_constraints ((size_t)18)
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
+NARROW APART void constraints_run(const prepared *m, const real *X, real *constraints,
+    status_flags *t)
 {
     real s[PASSED_IN_constraints] CLEARED;
     real o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
@@ -3334,16 +3187,15 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_A_V_X(m, w, i, j, s, A, &v);
     stage_prs_legs_required(m, i, &v);
-    /* (prs-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (prs-c) */
     o[0*count + k] = v.prs_c_x;
     o[1*count + k] = v.prs_c_y;
     o[2*count + k] = v.prs_c_z;
-    /* (prs-w_1) reciprocal vector 1 */
+    /* (prs-w_1) */
     o[3*count + k] = v.prs_w_1_x_2;
     o[4*count + k] = v.prs_w_1_y_2;
     o[5*count + k] = v.prs_w_1_z_2;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     o[6*count + k] = m->prs_base_frame_xz[i];
     o[7*count + k] = m->prs_base_frame_yz[i];
     o[8*count + k] = m->prs_base_frame_zz[i];
@@ -3392,7 +3244,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3407,7 +3259,7 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    /* (prs-q_1) displacement of joint 1 */
+    /* (prs-q_1) */
     const real prs_q_1 = v.prs_S_in_axes0_x - v.prs_q_1_t;
     /* (potential) */
     const real prs_potential_t_4 = m->prs_b_in_axes0_x[i] + prs_q_1;
@@ -3473,7 +3325,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3484,8 +3336,7 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (prs-G) */
     const real prs_pivot_size = magnitude(v.prs_rho2_2);
     const real prs_pivot_size_2 = magnitude(v.prs_v_2_in_axes0_y);
     const real prs_least_pivots = lesser(root(m->inv_prs_root_2_t[i]*prs_pivot_size),
@@ -3537,7 +3388,7 @@ INLINE void condition_place_prs(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_prs = sums[0*w + k];
     const real spread_ = root(spread_prs)*m->spread_t;
     /* (spread) */
@@ -3548,8 +3399,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_prs[SUMS_OF_condition*LEGS(LEGS_OF_prs)] CLEARED, o_prs[17*LEGS(LEGS_OF_prs)] CLEARED;
@@ -3570,7 +3421,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 /* ---- what users call, as steps over these ---- */
 
-int tripod_3prs_M(const prepared *m, const real *X, real *M_out)
+NARROW int tripod_3prs_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3593,7 +3444,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int tripod_3prs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int tripod_3prs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3617,7 +3468,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int tripod_3prs_H(const prepared *m, const real *X, real *H_out)
+NARROW int tripod_3prs_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3640,7 +3491,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int tripod_3prs_Hk(const prepared *m, const real *X, real *Hk_out)
+NARROW int tripod_3prs_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     status_flags why;
     start(1, &why);
@@ -3663,7 +3514,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
-int tripod_3prs_constraints(const prepared *m, const real *X, real *constraints_out)
+NARROW int tripod_3prs_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     status_flags why;
     start(1, &why);
@@ -3686,7 +3537,7 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     copy_side_by_side(3, constraints, constraints_out);
 }
 
-int tripod_3prs_constraint_bias(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3prs_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
     status_flags why;
@@ -3712,7 +3563,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
-int tripod_3prs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3prs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3735,7 +3586,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int tripod_3prs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3prs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3760,8 +3611,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int tripod_3prs_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3prs_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3787,7 +3638,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
@@ -3999,8 +3850,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
 static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
 
-int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out)
+NARROW int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
@@ -4058,8 +3909,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out)
+NARROW int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
@@ -4132,8 +3983,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -4146,8 +3997,8 @@ int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
@@ -4171,8 +4022,8 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -4190,7 +4041,8 @@ int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4224,8 +4076,8 @@ int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
-    *legs_out)
+NARROW int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *sigma_out,
+    real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4260,7 +4112,7 @@ int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *si
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -4312,8 +4164,8 @@ int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
@@ -4348,7 +4200,7 @@ int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] CLEARED,
@@ -4369,7 +4221,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(6, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
@@ -4426,8 +4278,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4437,7 +4289,7 @@ int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
+NARROW static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
     real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
@@ -4450,7 +4302,7 @@ static int constraint_residual_one(const prepared *m, const real *X, real *resid
     return finished(NC, residual, residual_out, &why);
 }
 
-static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4507,7 +4359,7 @@ static int search_constraint_residual(const prepared *m, const real *start, real
 }
 
 
-int tripod_3prs_project(const prepared *m, const real *X, real *projected_out)
+NARROW int tripod_3prs_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     status_flags why;
@@ -4517,7 +4369,7 @@ int tripod_3prs_project(const prepared *m, const real *X, real *projected_out)
     return finished(NQ, projected, projected_out, &why);
 }
 
-int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4533,7 +4385,8 @@ int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4544,7 +4397,7 @@ int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4560,7 +4413,7 @@ int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4574,7 +4427,7 @@ int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -4585,7 +4438,8 @@ int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -4596,8 +4450,8 @@ int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -4608,8 +4462,8 @@ int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int tripod_3prs_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int tripod_3prs_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4621,7 +4475,7 @@ int tripod_3prs_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int tripod_3prs_rotation(const real *X, real *R_out)
+NARROW int tripod_3prs_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -4632,19 +4486,18 @@ int tripod_3prs_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int tripod_3prs_pose(const real *t, const real *R, real *X_out)
+NARROW int tripod_3prs_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -4657,19 +4510,18 @@ int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -4685,7 +4537,7 @@ int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
+NARROW int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -4701,7 +4553,7 @@ int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};

@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && TRIPOD_3RPS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3RPS_LANES >= 4 && VECTORS_OF(TRIPOD_3RPS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +293,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +308,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +414,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -589,8 +606,9 @@ static int acceptable(const tripod_3rps_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *model)
 {
@@ -601,10 +619,10 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     real b_c_rps_in_platform_x = 0;
     real b_c_rps_in_platform_y = 0;
     real b_c_rps_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
-    const real platform_mass = params->platform_mass;
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
+    KEEP(platform_mass, params->platform_mass);
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_centre_of_mass_z = params->platform_centre_of_mass[2];
@@ -615,101 +633,78 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = platform_centre_of_mass_x*platform_mass;
-    const real h_star_in_platform_y = platform_centre_of_mass_y*platform_mass;
-    const real h_star_in_platform_z = platform_centre_of_mass_z*platform_mass;
+    KEEP(h_star_in_platform_x, platform_centre_of_mass_x*platform_mass);
+    KEEP(h_star_in_platform_y, platform_centre_of_mass_y*platform_mass);
+    KEEP(h_star_in_platform_z, platform_centre_of_mass_z*platform_mass);
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
     const real J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3;
-    const real J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t -
-        J_star_t_4);
-    const real J_star_in_platform_xy = platform_inertia_xy -
-        platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass;
-    const real J_star_in_platform_xz = platform_inertia_xz -
-        platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass;
-    const real J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 -
-        J_star_t_4);
-    const real J_star_in_platform_yz = platform_inertia_yz -
-        platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
-    const real J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 -
-        J_star_t_4);
+    KEEP(J_star_in_platform_xx, platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4));
+    KEEP(J_star_in_platform_xy, platform_inertia_xy -
+        platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass);
+    KEEP(J_star_in_platform_xz, platform_inertia_xz -
+        platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass);
+    KEEP(J_star_in_platform_yy, platform_inertia_yy - platform_mass*(J_star_t_2 -
+        J_star_t_4));
+    KEEP(J_star_in_platform_yz, platform_inertia_yz -
+        platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass);
+    KEEP(J_star_in_platform_zz, platform_inertia_zz - platform_mass*(J_star_t_3 -
+        J_star_t_4));
     const real J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_6 = R(0.5)*J_star_t_5;
+    KEEP(J_star_t_6, R(0.5)*J_star_t_5);
     const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_8 = R(0.5)*J_star_t_7;
-    const real J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_8, R(0.5)*J_star_t_7);
+    KEEP(J_star_t_9, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*platform_mass;
-    const real Z_p_t_2 = gravity_y*platform_mass;
-    const real Z_p_t_3 = gravity_z*platform_mass;
+    KEEP(Z_p_t, gravity_x*platform_mass);
+    KEEP(Z_p_t_2, gravity_y*platform_mass);
+    KEEP(Z_p_t_3, gravity_z*platform_mass);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.299038105676658)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_6);
-    KEEP(J_star_t_8);
-    KEEP(J_star_t_9);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(platform_mass);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.299038105676658)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rps); ++leg) {
         const size_t own = leg < LEGS_OF_rps ? leg : 0;
-        const real rps_base_point_x = params->rps_base_point[own][0];
-        const real rps_base_point_y = params->rps_base_point[own][1];
-        const real rps_base_point_z = params->rps_base_point[own][2];
-        const real rps_base_frame_xx = params->rps_base_frame[own][0][0];
-        const real rps_base_frame_xy = params->rps_base_frame[own][0][1];
-        const real rps_base_frame_xz = params->rps_base_frame[own][0][2];
-        const real rps_base_frame_yx = params->rps_base_frame[own][1][0];
-        const real rps_base_frame_yy = params->rps_base_frame[own][1][1];
-        const real rps_base_frame_yz = params->rps_base_frame[own][1][2];
-        const real rps_base_frame_zx = params->rps_base_frame[own][2][0];
-        const real rps_base_frame_zy = params->rps_base_frame[own][2][1];
-        const real rps_base_frame_zz = params->rps_base_frame[own][2][2];
-        const real rps_platform_point_x = params->rps_platform_point[own][0];
-        const real rps_platform_point_y = params->rps_platform_point[own][1];
-        const real rps_platform_point_z = params->rps_platform_point[own][2];
-        const real rps_link1_mass = params->rps_link1_mass[own];
+        KEEP_OF_LEG(rps_base_point_x, params->rps_base_point[own][0]);
+        KEEP_OF_LEG(rps_base_point_y, params->rps_base_point[own][1]);
+        KEEP_OF_LEG(rps_base_point_z, params->rps_base_point[own][2]);
+        KEEP_OF_LEG(rps_base_frame_xx, params->rps_base_frame[own][0][0]);
+        KEEP_OF_LEG(rps_base_frame_xy, params->rps_base_frame[own][0][1]);
+        KEEP_OF_LEG(rps_base_frame_xz, params->rps_base_frame[own][0][2]);
+        KEEP_OF_LEG(rps_base_frame_yx, params->rps_base_frame[own][1][0]);
+        KEEP_OF_LEG(rps_base_frame_yy, params->rps_base_frame[own][1][1]);
+        KEEP_OF_LEG(rps_base_frame_yz, params->rps_base_frame[own][1][2]);
+        KEEP_OF_LEG(rps_base_frame_zx, params->rps_base_frame[own][2][0]);
+        KEEP_OF_LEG(rps_base_frame_zy, params->rps_base_frame[own][2][1]);
+        KEEP_OF_LEG(rps_base_frame_zz, params->rps_base_frame[own][2][2]);
+        KEEP_OF_LEG(rps_platform_point_x, params->rps_platform_point[own][0]);
+        KEEP_OF_LEG(rps_platform_point_y, params->rps_platform_point[own][1]);
+        KEEP_OF_LEG(rps_platform_point_z, params->rps_platform_point[own][2]);
+        KEEP_OF_LEG(rps_link1_mass, params->rps_link1_mass[own]);
         const real rps_link1_centre_of_mass_x = params->rps_link1_centre_of_mass[own][0];
         const real rps_link1_centre_of_mass_y = params->rps_link1_centre_of_mass[own][1];
         const real rps_link1_centre_of_mass_z = params->rps_link1_centre_of_mass[own][2];
         const real rps_link1_inertia_zz = params->rps_link1_inertia[own][2][2];
-        const real rps_link2_mass = params->rps_link2_mass[own];
+        KEEP_OF_LEG(rps_link2_mass, params->rps_link2_mass[own]);
         const real rps_link2_centre_of_mass_x = params->rps_link2_centre_of_mass[own][0];
         const real rps_link2_centre_of_mass_y = params->rps_link2_centre_of_mass[own][1];
         const real rps_link2_centre_of_mass_z = params->rps_link2_centre_of_mass[own][2];
         const real rps_link2_inertia_zz = params->rps_link2_inertia[own][2][2];
         static const signed char signs_rps_branch_1[] = {1, 1, 1};
-        const real rps_branch_1 = signs_rps_branch_1[own];
+        KEEP_OF_LEG(rps_branch_1, signs_rps_branch_1[own]);
         /* (rps-h_1) first moment of link 1 about the origin of link 1 */
-        const real rps_h_1_in_spec1_x = rps_link1_centre_of_mass_x*rps_link1_mass;
-        const real rps_h_1_in_spec1_y = rps_link1_centre_of_mass_y*rps_link1_mass;
+        KEEP_OF_LEG(rps_h_1_in_spec1_x, rps_link1_centre_of_mass_x*rps_link1_mass);
+        KEEP_OF_LEG(rps_h_1_in_spec1_y, rps_link1_centre_of_mass_y*rps_link1_mass);
         /* (rps-h_2) first moment of link 2 about the origin of link 2 */
-        const real rps_h_2_in_spec1_x = rps_link2_centre_of_mass_x*rps_link2_mass;
-        const real rps_h_2_in_spec1_y = rps_link2_centre_of_mass_y*rps_link2_mass;
+        KEEP_OF_LEG(rps_h_2_in_spec1_x, rps_link2_centre_of_mass_x*rps_link2_mass);
+        KEEP_OF_LEG(rps_h_2_in_spec1_y, rps_link2_centre_of_mass_y*rps_link2_mass);
         /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rps_acc_2_t = gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx +
-            gravity_z*rps_base_frame_zx;
-        const real rps_acc_2_t_2 = gravity_x*rps_base_frame_xy + gravity_y*rps_base_frame_yy +
-            gravity_z*rps_base_frame_zy;
+        KEEP_OF_LEG(rps_acc_2_t, gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx +
+            gravity_z*rps_base_frame_zx);
+        KEEP_OF_LEG(rps_acc_2_t_2, gravity_x*rps_base_frame_xy + gravity_y*rps_base_frame_yy +
+            gravity_z*rps_base_frame_zy);
         /* (rps-J_group_1) inertia of the links that turn with link 1, each about its reference point */
         const real rps_J_group_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z;
         const real rps_J_group_1_t_2 = rps_J_group_1_t +
@@ -719,59 +714,30 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         const real rps_J_group_1_t_4 = rps_J_group_1_t_3 +
             rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x +
             rps_link2_centre_of_mass_y*rps_link2_centre_of_mass_y;
-        const real rps_J_group_1_in_axes1_zz = rps_link1_inertia_zz + rps_link2_inertia_zz -
+        KEEP_OF_LEG(rps_J_group_1_in_axes1_zz, rps_link1_inertia_zz + rps_link2_inertia_zz -
             rps_link1_mass*(rps_J_group_1_t - rps_J_group_1_t_2) -
-            rps_link2_mass*(rps_J_group_1_t_3 - rps_J_group_1_t_4);
+            rps_link2_mass*(rps_J_group_1_t_3 - rps_J_group_1_t_4));
         /* (potential) potential energy */
-        const real rps_potential_t = rps_base_frame_xx*rps_base_point_x +
-            rps_base_frame_yx*rps_base_point_y + rps_base_frame_zx*rps_base_point_z;
-        const real rps_potential_t_2 = rps_base_frame_xy*rps_base_point_x +
-            rps_base_frame_yy*rps_base_point_y + rps_base_frame_zy*rps_base_point_z;
+        KEEP_OF_LEG(rps_potential_t, rps_base_frame_xx*rps_base_point_x +
+            rps_base_frame_yx*rps_base_point_y + rps_base_frame_zx*rps_base_point_z);
+        KEEP_OF_LEG(rps_potential_t_2, rps_base_frame_xy*rps_base_point_x +
+            rps_base_frame_yy*rps_base_point_y + rps_base_frame_zy*rps_base_point_z);
         const real rps_b_in_spec1_z = rps_base_frame_xz*rps_base_point_x +
             rps_base_frame_yz*rps_base_point_y + rps_base_frame_zz*rps_base_point_z;
-        const real rps_potential_t_3 = (gravity_x*rps_base_frame_xz + gravity_y*rps_base_frame_yz
+        KEEP_OF_LEG(rps_potential_t_3, (gravity_x*rps_base_frame_xz + gravity_y*rps_base_frame_yz
             + gravity_z*rps_base_frame_zz)*(rps_b_in_spec1_z*rps_link1_mass +
             rps_b_in_spec1_z*rps_link2_mass + rps_link1_centre_of_mass_z*rps_link1_mass +
-            rps_link2_centre_of_mass_z*rps_link2_mass);
-        KEEP_OF_LEG(rps_J_group_1_in_axes1_zz);
-        KEEP_OF_LEG(rps_acc_2_t);
-        KEEP_OF_LEG(rps_acc_2_t_2);
-        KEEP_OF_LEG(rps_base_frame_xx);
-        KEEP_OF_LEG(rps_base_frame_xy);
-        KEEP_OF_LEG(rps_base_frame_xz);
-        KEEP_OF_LEG(rps_base_frame_yx);
-        KEEP_OF_LEG(rps_base_frame_yy);
-        KEEP_OF_LEG(rps_base_frame_yz);
-        KEEP_OF_LEG(rps_base_frame_zx);
-        KEEP_OF_LEG(rps_base_frame_zy);
-        KEEP_OF_LEG(rps_base_frame_zz);
-        KEEP_OF_LEG(rps_base_point_x);
-        KEEP_OF_LEG(rps_base_point_y);
-        KEEP_OF_LEG(rps_base_point_z);
-        KEEP_OF_LEG(rps_branch_1);
-        KEEP_OF_LEG(rps_h_1_in_spec1_x);
-        KEEP_OF_LEG(rps_h_1_in_spec1_y);
-        KEEP_OF_LEG(rps_h_2_in_spec1_x);
-        KEEP_OF_LEG(rps_h_2_in_spec1_y);
-        KEEP_OF_LEG(rps_link1_mass);
-        KEEP_OF_LEG(rps_link2_mass);
-        KEEP_OF_LEG(rps_platform_point_x);
-        KEEP_OF_LEG(rps_platform_point_y);
-        KEEP_OF_LEG(rps_platform_point_z);
-        KEEP_OF_LEG(rps_potential_t);
-        KEEP_OF_LEG(rps_potential_t_2);
-        KEEP_OF_LEG(rps_potential_t_3);
-        b_c_rps_in_platform_x += leg < LEGS_OF_rps ? rps_platform_point_x : 0;
-        b_c_rps_in_platform_y += leg < LEGS_OF_rps ? rps_platform_point_y : 0;
-        b_c_rps_in_platform_z += leg < LEGS_OF_rps ? rps_platform_point_z : 0;
+            rps_link2_centre_of_mass_z*rps_link2_mass));
+        if (leg < LEGS_OF_rps) {
+            b_c_rps_in_platform_x += rps_platform_point_x;
+            b_c_rps_in_platform_y += rps_platform_point_y;
+            b_c_rps_in_platform_z += rps_platform_point_z;
+        }
     }
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rps_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rps_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rps_in_platform_z;
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_rps_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_rps_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_rps_in_platform_z);
     return OK;
 }
 
@@ -1574,14 +1540,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1620,7 +1586,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1707,7 +1673,7 @@ INLINE void stage_rps_X(const prepared *m, size_t w, size_t i, size_t j, const r
         m->rps_base_frame_yx[i]*v->rps_s_1;
     v->axis_y_rps_axes1_z = m->rps_base_frame_zy[i]*v->rps_c_1 -
         m->rps_base_frame_zx[i]*v->rps_s_1;
-    /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rps-acc_2) */
     v->rps_g_in_axes1_x = m->rps_acc_2_t[i]*v->rps_c_1 + m->rps_acc_2_t_2[i]*v->rps_s_1;
     v->rps_g_in_axes1_y = m->rps_acc_2_t_2[i]*v->rps_c_1 - m->rps_acc_2_t[i]*v->rps_s_1;
     /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
@@ -1726,7 +1692,7 @@ INLINE void stage_rps_X(const prepared *m, size_t w, size_t i, size_t j, const r
 INLINE void stage_rps_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rps *v)
 {
-    /* (rps-S_dot) velocity of the connection point */
+    /* (rps-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     const real rps_S_dot_t = omega_y*v->rps_q_z - omega_z*v->rps_q_y;
@@ -1741,7 +1707,7 @@ INLINE void stage_rps_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rps_S_dot_z = t_dot_z + rps_S_dot_t_3;
     v->rps_S_dot_in_axes1_x = v->axis_x_rps_axes1_x*rps_S_dot_x +
         v->axis_x_rps_axes1_y*rps_S_dot_y + v->axis_x_rps_axes1_z*rps_S_dot_z;
-    /* (rps-qd_1) rate of joint 1 */
+    /* (rps-qd_1) */
     v->rps_qd_1 = v->inv_rps_q_2*(v->axis_y_rps_axes1_x*rps_S_dot_x +
         v->axis_y_rps_axes1_y*rps_S_dot_y + v->axis_y_rps_axes1_z*rps_S_dot_z);
     /* (rps-W_1) centripetal tensor of link 1 */
@@ -1836,7 +1802,7 @@ INLINE void stage_rps_M_dynamics(const prepared *m, size_t i, values_rps *v)
 
 INLINE void stage_rps_Z_dynamics(const prepared *m, size_t i, values_rps *v)
 {
-    /* (rps-u_1) centripetal acceleration of the connection point */
+    /* (rps-u_1) */
     const real rps_u_1_in_axes1_y = v->axis_y_rps_axes1_x*v->rps_u_1_x +
         v->axis_y_rps_axes1_y*v->rps_u_1_y + v->axis_y_rps_axes1_z*v->rps_u_1_z;
     /* (rps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -1878,15 +1844,15 @@ INLINE void stage_rps_Z_dynamics(const prepared *m, size_t i, values_rps *v)
 
 INLINE void stage_rps_legs_required(const prepared *m, size_t i, values_rps *v)
 {
-    /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
+    /* (rps-acc_2) */
     const real rps_acc_2_in_axes1_x = v->rps_S_ddot_in_axes1_x - v->rps_g_in_axes1_x;
     const real rps_acc_2_in_axes1_y = v->rps_S_ddot_in_axes1_y - v->rps_g_in_axes1_y;
-    /* (rps-f_2) inertia force of link 2 less its weight */
+    /* (rps-f_2) */
     const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*m->rps_link2_mass[i] - v->rps_f_2_t -
         m->rps_h_2_in_spec1_y[i]*v->rps_qdd_1;
     const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*m->rps_link2_mass[i] - v->rps_f_2_t_2
         + m->rps_h_2_in_spec1_x[i]*v->rps_qdd_1;
-    /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    /* (rps-mu_1) */
     const real rps_mu_1_in_axes1_z = rps_acc_2_in_axes1_y*m->rps_h_2_in_spec1_x[i] -
         v->rps_mu_1_t - rps_acc_2_in_axes1_x*m->rps_h_2_in_spec1_y[i] +
         m->rps_J_group_1_in_axes1_zz[i]*v->rps_qdd_1;
@@ -1937,7 +1903,7 @@ INLINE void any_sums_rps(size_t k, size_t count, int add, const values_rps *v, r
     gather(&terms[3*count + k], add, v->rps_d_c_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->rps_d_c_yz);  /* M_tt_t_5 */
     gather(&terms[5*count + k], add, v->rps_d_c_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->rps_M_ta_t_5);  /* M_ta_yy */
     gather(&terms[7*count + k], add, -v->rps_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->rps_M_ta_t);  /* M_ta_xy_of_legs */
@@ -1946,7 +1912,7 @@ INLINE void any_sums_rps(size_t k, size_t count, int add, const values_rps *v, r
     gather(&terms[11*count + k], add, v->rps_M_ta_t_6);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->rps_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->rps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[14*count + k], add, v->rps_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v->rps_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v->rps_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -1961,7 +1927,7 @@ INLINE void any_sums_rps_2(size_t k, size_t count, int add, const values_rps *v,
     gather(&terms[0*count + k], add, v->rps_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->rps_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->rps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->rps_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->rps_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->rps_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -1973,7 +1939,7 @@ INLINE void any_entries_rps(size_t k, size_t count, const values_rps *v, real *o
     o[0*count + k] = v->axis_x_rps_axes1_x;
     o[1*count + k] = v->axis_x_rps_axes1_y;
     o[2*count + k] = v->axis_x_rps_axes1_z;
-    /* (rps-H_a_2) moment of the column's unit force about the platform origin */
+    /* (rps-H_a_2) */
     o[3*count + k] = v->rps_H_a_2_x;
     o[4*count + k] = v->rps_H_a_2_y;
     o[5*count + k] = v->rps_H_a_2_z;
@@ -1982,14 +1948,144 @@ INLINE void any_entries_rps(size_t k, size_t count, const values_rps *v, real *o
 INLINE void any_entries_rps_2(const prepared *m, size_t i, size_t k, size_t count, const
     values_rps *v, real *o)
 {
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     o[0*count + k] = m->rps_base_frame_xz[i];
     o[1*count + k] = m->rps_base_frame_yz[i];
     o[2*count + k] = m->rps_base_frame_zz[i];
-    /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+    /* (rps-Hk_a_1) */
     o[3*count + k] = v->rps_Hk_a_1_x;
     o[4*count + k] = v->rps_Hk_a_1_y;
     o[5*count + k] = v->rps_Hk_a_1_z;
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_t_3 = sums[2*w + k];
+    M[2*w + k] = -M_tt_t_3;
+    M[2*NV*w + k] = -M_tt_t_3;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_t_5 = sums[4*w + k];
+    M[(NV + 2)*w + k] = -M_tt_t_5;
+    M[(2*NV + 1)*w + k] = -M_tt_t_5;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_rps(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2063,7 +2159,7 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rps_V_X(m, w, i, j, V, &v);
     stage_rps_M_dynamics(m, i, &v);
     stage_rps_Z_dynamics(m, i, &v);
-    /* (rps-u_1) centripetal acceleration of the connection point */
+    /* (rps-u_1) */
     const real rps_u_1_in_axes1_z = m->rps_base_frame_xz[i]*v.rps_u_1_x +
         m->rps_base_frame_yz[i]*v.rps_u_1_y + m->rps_base_frame_zz[i]*v.rps_u_1_z;
     any_sums_rps(k, count, add, &v, terms);
@@ -2104,132 +2200,15 @@ INLINE void dynamics_place_rps(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[20*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[21*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[22*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[23*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[24*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[25*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_t_2 = sums[1*w + k];
-    M[1*w + k] = -M_tt_t_2;
-    M[NV*w + k] = -M_tt_t_2;
-    const real M_tt_t_3 = sums[2*w + k];
-    M[2*w + k] = -M_tt_t_3;
-    M[2*NV*w + k] = -M_tt_t_3;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_t_5 = sums[4*w + k];
-    M[(NV + 2)*w + k] = -M_tt_t_5;
-    M[(2*NV + 1)*w + k] = -M_tt_t_5;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 20*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)26)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_rps[SUMS_OF_dynamics*LEGS(LEGS_OF_rps)] CLEARED, o_rps[15*LEGS(LEGS_OF_rps)] CLEARED;
@@ -2293,103 +2272,13 @@ INLINE void M_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_yy = sums[6*w + k];
-    const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = -M_ta_yy - M_ta_zz;
-    const real M_ta_xy_of_legs = sums[8*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[9*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[14*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[15*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[17*w + k];
-    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[19*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_t_2 = sums[1*w + k];
-    M[1*w + k] = -M_tt_t_2;
-    M[NV*w + k] = -M_tt_t_2;
-    const real M_tt_t_3 = sums[2*w + k];
-    M[2*w + k] = -M_tt_t_3;
-    M[2*NV*w + k] = -M_tt_t_3;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_t_5 = sums[4*w + k];
-    M[(NV + 2)*w + k] = -M_tt_t_5;
-    M[(2*NV + 1)*w + k] = -M_tt_t_5;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)20)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_rps[SUMS_OF_M*LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
@@ -2408,7 +2297,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2461,35 +2350,7 @@ INLINE void Z_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2515,7 +2376,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2571,7 +2432,7 @@ INLINE void H_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_rps[8*LEGS(LEGS_OF_rps)] CLEARED;
@@ -2633,7 +2494,7 @@ INLINE void Hk_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, 
 
 #define PASSED_IN_Hk ((size_t)18)
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
+NARROW APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
     real s[PASSED_IN_Hk] CLEARED;
     real o_rps[7*LEGS(LEGS_OF_rps)] CLEARED;
@@ -2677,11 +2538,10 @@ INLINE void constraint_bias_legs_rps(const prepared *m, size_t w, size_t i, size
     values_rps v;
     stage_rps_X(m, w, i, j, s, X, &v);
     stage_rps_V_X(m, w, i, j, V, &v);
-    /* (rps-u_1) centripetal acceleration of the connection point */
+    /* (rps-u_1) */
     const real rps_u_1_in_axes1_z = m->rps_base_frame_xz[i]*v.rps_u_1_x +
         m->rps_base_frame_yz[i]*v.rps_u_1_y + m->rps_base_frame_zz[i]*v.rps_u_1_z;
-    /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
+    /* (rps-gamma_c1) */
     o[0*count + k] = rps_u_1_in_axes1_z;
     o[1*count + k] = rps_u_1_in_axes1_z;
 }
@@ -2808,11 +2668,11 @@ INLINE void required_legs_rps(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rps_V_X(m, w, i, j, V, &v);
     stage_rps_A_V_X(w, j, s, A, &v);
     stage_rps_legs_required(m, i, &v);
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real rps_R_a_t = v.rps_c_y*v.rps_q_z - v.rps_c_z*v.rps_q_y;
     const real rps_R_a_t_2 = v.rps_c_z*v.rps_q_x - v.rps_c_x*v.rps_q_z;
     const real rps_R_a_t_3 = v.rps_c_x*v.rps_q_y - v.rps_c_y*v.rps_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.rps_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.rps_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, v.rps_c_z);  /* R_t_z_of_legs */
@@ -2846,7 +2706,7 @@ INLINE void required_place_rps(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2856,7 +2716,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2903,8 +2763,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rps[13*LANES];
@@ -2941,7 +2801,7 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t w, size_t i, s
     const real rps_q_1 = angle(v.rps_s_1, v.rps_c_1);
     /* (rps-q_1) */
     o[0*count + k] = rps_q_1;
-    /* (rps-q_2) displacement of joint 2 */
+    /* (rps-q_2) */
     o[1*count + k] = v.rps_q_2;
     o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1);
     o[3*count + k] = rps_q_1 + v.rps_q_2;
@@ -2958,7 +2818,8 @@ INLINE void inverse_kinematics_place_rps(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rps[4*LEGS(LEGS_OF_rps)] CLEARED;
@@ -3002,7 +2863,7 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t w, size_t i, size_t j
     values_rps v;
     stage_rps_X(m, w, i, j, s, X, &v);
     stage_rps_V_X(m, w, i, j, V, &v);
-    /* (rps-qd_1) rate of joint 1 */
+    /* (rps-qd_1) */
     o[0*count + k] = v.rps_qd_1;
     /* (rps-qd_2) rate of joint 2 */
     o[1*count + k] = v.rps_S_dot_in_axes1_x;
@@ -3022,8 +2883,8 @@ INLINE void joint_rates_place_rps(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_rps[4*LEGS(LEGS_OF_rps)] CLEARED;
@@ -3068,9 +2929,9 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t w, size_t i, 
     stage_rps_X(m, w, i, j, s, X, &v);
     stage_rps_V_X(m, w, i, j, V, &v);
     stage_rps_A_V_X(w, j, s, A, &v);
-    /* (rps-rel) acceleration of the connection point left to the joint accelerations */
+    /* (rps-rel) */
     const real rps_rel_in_axes1_x = v.rps_S_ddot_in_axes1_x + v.rps_W_1_t*v.rps_q_2;
-    /* (rps-qdd_1) acceleration of joint 1 */
+    /* (rps-qdd_1) */
     o[0*count + k] = v.rps_qdd_1;
     /* (rps-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rps_rel_in_axes1_x;
@@ -3090,8 +2951,8 @@ INLINE void joint_accelerations_place_rps(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rps[4*LEGS(LEGS_OF_rps)] CLEARED;
@@ -3134,7 +2995,7 @@ INLINE void constraints_legs_rps(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rps v;
     stage_rps_X(m, w, i, j, s, X, &v);
-    /* (rps-S) from the base point to the connection point */
+    /* (rps-S) */
     const real rps_S_in_turn1_z = v.rps_S_x*m->rps_base_frame_xz[i] +
         v.rps_S_y*m->rps_base_frame_yz[i] + v.rps_S_z*m->rps_base_frame_zz[i];
     /* (rps-phi_c1) loop-closure residual along the constraint force */
@@ -3151,7 +3012,8 @@ INLINE void constraints_place_rps(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_constraints ((size_t)18)
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
+NARROW APART void constraints_run(const prepared *m, const real *X, real *constraints,
+    status_flags *t)
 {
     real s[PASSED_IN_constraints] CLEARED;
     real o_rps[2*LEGS(LEGS_OF_rps)] CLEARED;
@@ -3197,16 +3059,15 @@ INLINE void legs_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rps_V_X(m, w, i, j, V, &v);
     stage_rps_A_V_X(w, j, s, A, &v);
     stage_rps_legs_required(m, i, &v);
-    /* (rps-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (rps-c) */
     o[0*count + k] = v.rps_c_x;
     o[1*count + k] = v.rps_c_y;
     o[2*count + k] = v.rps_c_z;
-    /* (rps-w_2) reciprocal vector 2 */
+    /* (rps-w_2) */
     o[3*count + k] = v.axis_x_rps_axes1_x;
     o[4*count + k] = v.axis_x_rps_axes1_y;
     o[5*count + k] = v.axis_x_rps_axes1_z;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     o[6*count + k] = m->rps_base_frame_xz[i];
     o[7*count + k] = m->rps_base_frame_yz[i];
     o[8*count + k] = m->rps_base_frame_zz[i];
@@ -3253,7 +3114,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3334,7 +3195,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3345,8 +3206,7 @@ INLINE void condition_legs_rps(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rps v;
     stage_rps_X(m, w, i, j, s, X, &v);
-    /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (rps-G) */
     const real rps_pivot_size = magnitude(v.rps_q_2_t);
     const real rps_pivot_size_2 = magnitude(v.rps_q_2);
     const real rps_least_pivots = lesser(R(1.3333333333333333)*root(rps_pivot_size),
@@ -3394,7 +3254,7 @@ INLINE void condition_place_rps(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_rps = sums[0*w + k];
     const real spread_ = root(spread_rps)*m->spread_t;
     /* (spread) */
@@ -3405,8 +3265,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_rps[SUMS_OF_condition*LEGS(LEGS_OF_rps)] CLEARED, o_rps[15*LEGS(LEGS_OF_rps)] CLEARED;
@@ -3428,7 +3288,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 /* ---- what users call, as steps over these ---- */
 
-int tripod_3rps_M(const prepared *m, const real *X, real *M_out)
+NARROW int tripod_3rps_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3451,7 +3311,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int tripod_3rps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int tripod_3rps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3475,7 +3335,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int tripod_3rps_H(const prepared *m, const real *X, real *H_out)
+NARROW int tripod_3rps_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3498,7 +3358,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int tripod_3rps_Hk(const prepared *m, const real *X, real *Hk_out)
+NARROW int tripod_3rps_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     status_flags why;
     start(1, &why);
@@ -3521,7 +3381,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
-int tripod_3rps_constraints(const prepared *m, const real *X, real *constraints_out)
+NARROW int tripod_3rps_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     status_flags why;
     start(1, &why);
@@ -3544,7 +3404,7 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     copy_side_by_side(3, constraints, constraints_out);
 }
 
-int tripod_3rps_constraint_bias(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3rps_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
     status_flags why;
@@ -3570,7 +3430,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
-int tripod_3rps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3rps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3593,7 +3453,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int tripod_3rps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3rps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3618,8 +3478,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int tripod_3rps_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3rps_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3645,7 +3505,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int tripod_3rps_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int tripod_3rps_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
@@ -3857,8 +3717,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
 static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
 
-int tripod_3rps_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out)
+NARROW int tripod_3rps_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
@@ -3916,8 +3776,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int tripod_3rps_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out)
+NARROW int tripod_3rps_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
@@ -3990,8 +3850,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int tripod_3rps_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int tripod_3rps_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -4004,8 +3864,8 @@ int tripod_3rps_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
@@ -4029,8 +3889,8 @@ int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -4048,7 +3908,8 @@ int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int tripod_3rps_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int tripod_3rps_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4082,8 +3943,8 @@ int tripod_3rps_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3rps_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
-    *legs_out)
+NARROW int tripod_3rps_condition_constrained(const prepared *m, const real *X, real *sigma_out,
+    real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4118,7 +3979,7 @@ int tripod_3rps_condition_constrained(const prepared *m, const real *X, real *si
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3rps_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int tripod_3rps_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -4170,8 +4031,8 @@ int tripod_3rps_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int tripod_3rps_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int tripod_3rps_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
@@ -4206,7 +4067,7 @@ int tripod_3rps_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] CLEARED,
@@ -4227,7 +4088,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(6, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
@@ -4284,8 +4145,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int tripod_3rps_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int tripod_3rps_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4295,7 +4156,7 @@ int tripod_3rps_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
+NARROW static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
     real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
@@ -4308,7 +4169,7 @@ static int constraint_residual_one(const prepared *m, const real *X, real *resid
     return finished(NC, residual, residual_out, &why);
 }
 
-static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4365,7 +4226,7 @@ static int search_constraint_residual(const prepared *m, const real *start, real
 }
 
 
-int tripod_3rps_project(const prepared *m, const real *X, real *projected_out)
+NARROW int tripod_3rps_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     status_flags why;
@@ -4375,7 +4236,7 @@ int tripod_3rps_project(const prepared *m, const real *X, real *projected_out)
     return finished(NQ, projected, projected_out, &why);
 }
 
-int tripod_3rps_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3rps_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4391,7 +4252,8 @@ int tripod_3rps_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int tripod_3rps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int tripod_3rps_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4402,7 +4264,7 @@ int tripod_3rps_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int tripod_3rps_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int tripod_3rps_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4418,7 +4280,7 @@ int tripod_3rps_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int tripod_3rps_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int tripod_3rps_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4432,7 +4294,7 @@ int tripod_3rps_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int tripod_3rps_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3rps_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -4443,7 +4305,8 @@ int tripod_3rps_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int tripod_3rps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3rps_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -4454,8 +4317,8 @@ int tripod_3rps_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int tripod_3rps_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3rps_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -4466,8 +4329,8 @@ int tripod_3rps_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int tripod_3rps_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int tripod_3rps_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4479,7 +4342,7 @@ int tripod_3rps_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int tripod_3rps_rotation(const real *X, real *R_out)
+NARROW int tripod_3rps_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -4490,19 +4353,18 @@ int tripod_3rps_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int tripod_3rps_pose(const real *t, const real *R, real *X_out)
+NARROW int tripod_3rps_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3rps_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int tripod_3rps_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -4515,19 +4377,18 @@ int tripod_3rps_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int tripod_3rps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int tripod_3rps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3rps_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int tripod_3rps_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -4543,7 +4404,7 @@ int tripod_3rps_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int tripod_3rps_difference(const real *X0, const real *X1, real *step_out)
+NARROW int tripod_3rps_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -4559,7 +4420,7 @@ int tripod_3rps_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int tripod_3rps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int tripod_3rps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};

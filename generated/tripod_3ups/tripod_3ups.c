@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && TRIPOD_3UPS_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3UPS_LANES >= 4 && VECTORS_OF(TRIPOD_3UPS_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -276,11 +293,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -289,10 +308,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -394,11 +414,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -589,8 +606,9 @@ static int acceptable(const tripod_3ups_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *model)
 {
@@ -605,9 +623,9 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     real b_c_ups_in_platform_x = 0;
     real b_c_ups_in_platform_y = 0;
     real b_c_ups_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
@@ -617,32 +635,27 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.385640646055102)*spread_t;
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(legs_size);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.385640646055102)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
-        const real ups_base_point_x = params->ups_base_point[own][0];
-        const real ups_base_point_y = params->ups_base_point[own][1];
-        const real ups_base_point_z = params->ups_base_point[own][2];
-        const real ups_base_frame_xx = params->ups_base_frame[own][0][0];
-        const real ups_base_frame_xy = params->ups_base_frame[own][0][1];
-        const real ups_base_frame_xz = params->ups_base_frame[own][0][2];
-        const real ups_base_frame_yx = params->ups_base_frame[own][1][0];
-        const real ups_base_frame_yy = params->ups_base_frame[own][1][1];
-        const real ups_base_frame_yz = params->ups_base_frame[own][1][2];
-        const real ups_base_frame_zx = params->ups_base_frame[own][2][0];
-        const real ups_base_frame_zy = params->ups_base_frame[own][2][1];
-        const real ups_base_frame_zz = params->ups_base_frame[own][2][2];
-        const real ups_platform_point_x = params->ups_platform_point[own][0];
-        const real ups_platform_point_y = params->ups_platform_point[own][1];
-        const real ups_platform_point_z = params->ups_platform_point[own][2];
-        const real ups_link2_mass = params->ups_link2_mass[own];
+        KEEP_OF_LEG(ups_base_point_x, params->ups_base_point[own][0]);
+        KEEP_OF_LEG(ups_base_point_y, params->ups_base_point[own][1]);
+        KEEP_OF_LEG(ups_base_point_z, params->ups_base_point[own][2]);
+        KEEP_OF_LEG(ups_base_frame_xx, params->ups_base_frame[own][0][0]);
+        KEEP_OF_LEG(ups_base_frame_xy, params->ups_base_frame[own][0][1]);
+        KEEP_OF_LEG(ups_base_frame_xz, params->ups_base_frame[own][0][2]);
+        KEEP_OF_LEG(ups_base_frame_yx, params->ups_base_frame[own][1][0]);
+        KEEP_OF_LEG(ups_base_frame_yy, params->ups_base_frame[own][1][1]);
+        KEEP_OF_LEG(ups_base_frame_yz, params->ups_base_frame[own][1][2]);
+        KEEP_OF_LEG(ups_base_frame_zx, params->ups_base_frame[own][2][0]);
+        KEEP_OF_LEG(ups_base_frame_zy, params->ups_base_frame[own][2][1]);
+        KEEP_OF_LEG(ups_base_frame_zz, params->ups_base_frame[own][2][2]);
+        KEEP_OF_LEG(ups_platform_point_x, params->ups_platform_point[own][0]);
+        KEEP_OF_LEG(ups_platform_point_y, params->ups_platform_point[own][1]);
+        KEEP_OF_LEG(ups_platform_point_z, params->ups_platform_point[own][2]);
+        KEEP_OF_LEG(ups_link2_mass, params->ups_link2_mass[own]);
         const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[own][0];
         const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[own][1];
         const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[own][2];
@@ -652,7 +665,7 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_link2_inertia_yy = params->ups_link2_inertia[own][1][1];
         const real ups_link2_inertia_yz = params->ups_link2_inertia[own][1][2];
         const real ups_link2_inertia_zz = params->ups_link2_inertia[own][2][2];
-        const real ups_link3_mass = params->ups_link3_mass[own];
+        KEEP_OF_LEG(ups_link3_mass, params->ups_link3_mass[own]);
         const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[own][0];
         const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[own][1];
         const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[own][2];
@@ -663,17 +676,17 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_link3_inertia_yz = params->ups_link3_inertia[own][1][2];
         const real ups_link3_inertia_zz = params->ups_link3_inertia[own][2][2];
         static const signed char signs_ups_branch_1[] = {1, 1, 1};
-        const real ups_branch_1 = signs_ups_branch_1[own];
+        KEEP_OF_LEG(ups_branch_1, signs_ups_branch_1[own]);
         static const signed char signs_ups_branch_2[] = {1, 1, 1};
-        const real ups_branch_2 = signs_ups_branch_2[own];
+        KEEP_OF_LEG(ups_branch_2, signs_ups_branch_2[own]);
         /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
+        KEEP_OF_LEG(ups_h_2_in_spec2_x, ups_link2_centre_of_mass_x*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y, ups_link2_centre_of_mass_y*ups_link2_mass);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z, ups_link2_centre_of_mass_z*ups_link2_mass);
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        KEEP_OF_LEG(ups_h_3_in_spec2_x, ups_link3_centre_of_mass_x*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y, ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z, ups_link3_centre_of_mass_z*ups_link3_mass);
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -683,129 +696,78 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
         const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
         const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
-        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx, ups_link2_inertia_xx + ups_link3_inertia_xx -
             ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_xy =
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy,
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+            ups_link2_inertia_xz - ups_link3_inertia_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz, ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
-            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy, ups_link2_inertia_zz + ups_link3_inertia_zz -
             ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
-        const real ups_J_group_2_in_axes2_yz =
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8));
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz,
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
-            ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_inertia_yz - ups_link3_inertia_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz, ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
-            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8));
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
             ups_J_group_2_in_axes2_zz;
         const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
-        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz, ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz);
         /* (ups-h_group_2) first moments of the links that turn with link 2 */
-        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
-        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
-        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x, ups_h_2_in_spec2_x + ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y, -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z, ups_h_2_in_spec2_y + ups_h_3_in_spec2_y);
         /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
         const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
         /* (potential) potential energy */
-        const real ups_potential_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_potential_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_potential_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
-        const real ups_potential_t_4 = ups_base_frame_xx*ups_base_point_x +
-            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_potential_t_5 = ups_base_frame_xy*ups_base_point_x +
-            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_potential_t_6 = ups_base_frame_xz*ups_base_point_x +
-            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_base_frame_xx);
-        KEEP_OF_LEG(ups_base_frame_xy);
-        KEEP_OF_LEG(ups_base_frame_xz);
-        KEEP_OF_LEG(ups_base_frame_yx);
-        KEEP_OF_LEG(ups_base_frame_yy);
-        KEEP_OF_LEG(ups_base_frame_yz);
-        KEEP_OF_LEG(ups_base_frame_zx);
-        KEEP_OF_LEG(ups_base_frame_zy);
-        KEEP_OF_LEG(ups_base_frame_zz);
-        KEEP_OF_LEG(ups_base_point_x);
-        KEEP_OF_LEG(ups_base_point_y);
-        KEEP_OF_LEG(ups_base_point_z);
-        KEEP_OF_LEG(ups_branch_1);
-        KEEP_OF_LEG(ups_branch_2);
-        KEEP_OF_LEG(ups_h_2_in_spec2_x);
-        KEEP_OF_LEG(ups_h_2_in_spec2_y);
-        KEEP_OF_LEG(ups_h_2_in_spec2_z);
-        KEEP_OF_LEG(ups_h_3_in_spec2_x);
-        KEEP_OF_LEG(ups_h_3_in_spec2_y);
-        KEEP_OF_LEG(ups_h_3_in_spec2_z);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
-        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
-        KEEP_OF_LEG(ups_link2_mass);
-        KEEP_OF_LEG(ups_link3_mass);
-        KEEP_OF_LEG(ups_platform_point_x);
-        KEEP_OF_LEG(ups_platform_point_y);
-        KEEP_OF_LEG(ups_platform_point_z);
-        KEEP_OF_LEG(ups_potential_t);
-        KEEP_OF_LEG(ups_potential_t_2);
-        KEEP_OF_LEG(ups_potential_t_3);
-        KEEP_OF_LEG(ups_potential_t_4);
-        KEEP_OF_LEG(ups_potential_t_5);
-        KEEP_OF_LEG(ups_potential_t_6);
-        m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
-        h_star_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
-        h_star_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
-        h_star_z_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_3 : 0;
-        b_c_ups_in_platform_x += leg < LEGS_OF_ups ? ups_platform_point_x : 0;
-        b_c_ups_in_platform_y += leg < LEGS_OF_ups ? ups_platform_point_y : 0;
-        b_c_ups_in_platform_z += leg < LEGS_OF_ups ? ups_platform_point_z : 0;
+        KEEP_OF_LEG(ups_potential_t, gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx);
+        KEEP_OF_LEG(ups_potential_t_2, gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy);
+        KEEP_OF_LEG(ups_potential_t_3, gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz);
+        KEEP_OF_LEG(ups_potential_t_4, ups_base_frame_xx*ups_base_point_x +
+            ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_5, ups_base_frame_xy*ups_base_point_x +
+            ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z);
+        KEEP_OF_LEG(ups_potential_t_6, ups_base_frame_xz*ups_base_point_x +
+            ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z);
+        if (leg < LEGS_OF_ups) {
+            m_star_of_legs += ups_link3_mass;
+            h_star_x_of_legs += ups_h_star_t;
+            h_star_y_of_legs += ups_h_star_t_2;
+            h_star_z_of_legs += ups_h_star_t_3;
+            b_c_ups_in_platform_x += ups_platform_point_x;
+            b_c_ups_in_platform_y += ups_platform_point_y;
+            b_c_ups_in_platform_z += ups_platform_point_z;
+        }
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_of_legs + platform_mass;
+    KEEP(m_star, m_star_of_legs + platform_mass);
     /* (h_star) */
-    const real h_star_x = h_star_t + h_star_x_of_legs;
-    const real h_star_y = h_star_t_2 + h_star_y_of_legs;
-    const real h_star_z = h_star_t_3 + h_star_z_of_legs;
+    KEEP(h_star_x, h_star_t + h_star_x_of_legs);
+    KEEP(h_star_y, h_star_t_2 + h_star_y_of_legs);
+    KEEP(h_star_z, h_star_t_3 + h_star_z_of_legs);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = -gravity_x*m_star;
-    const real Z_p_y = -gravity_y*m_star;
-    const real Z_p_z = -gravity_z*m_star;
+    KEEP(Z_p_x, -gravity_x*m_star);
+    KEEP(Z_p_y, -gravity_y*m_star);
+    KEEP(Z_p_z, -gravity_z*m_star);
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_ups_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_ups_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_ups_in_platform_z;
-    KEEP(Z_p_x);
-    KEEP(Z_p_y);
-    KEEP(Z_p_z);
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
-    KEEP(h_star_x);
-    KEEP(h_star_y);
-    KEEP(h_star_z);
-    KEEP(m_star);
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_ups_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_ups_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_ups_in_platform_z);
     return OK;
 }
 
@@ -1306,16 +1268,16 @@ INLINE void stage_ups_A_X(size_t w, size_t j, const real *A, values_ups *v)
 INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_ups *v)
 {
-    /* (ups-S_dot) velocity of the connection point */
+    /* (ups-S_dot) */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
     const real t_dot_z = V[2*w + j];
     v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*t_dot_x + v->axis_x_ups_axes2_y*t_dot_y +
         v->axis_x_ups_axes2_z*t_dot_z;
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*t_dot_x +
         v->axis_z_ups_axes2_y*t_dot_y + v->axis_z_ups_axes2_z*t_dot_z);
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*t_dot_x +
         v->axis_y_ups_axes2_y*t_dot_y + v->axis_y_ups_axes2_z*t_dot_z);
     /* (ups-omega_1) angular velocity of link 1 */
@@ -1336,7 +1298,7 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
     v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
     v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
@@ -1353,7 +1315,7 @@ INLINE void stage_ups_A_V_X(values_ups *v)
     const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
     /* (ups-qdd_1) acceleration of joint 1 */
     v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
         - v->ups_qdd_2_t);
     v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
@@ -1416,7 +1378,7 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
 
 INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
-    /* (ups-S_ddot) acceleration of the connection point */
+    /* (ups-S_ddot) */
     v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
     /* (ups-alpha_1) angular acceleration of link 1 */
     const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
@@ -1428,10 +1390,10 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    /* (ups-phi_3) */
     v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
         - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (ups-mu_2) */
     const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 -
         v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] - v->ups_mu_2_t_5 -
         v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
@@ -1451,8 +1413,7 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
         ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
         m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
     v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
@@ -1557,6 +1518,49 @@ INLINE void any_singular_ups(size_t k, const values_ups *v, real *o)
         LEAST_2);
 }
 
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *sums, real *M,
+    status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
+}
+
+INLINE void any_after_2(const prepared *m, size_t w, size_t k, const real *sums, real *Z,
+    status_flags *t)
+{
+    /* (Z_t) */
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
+}
+
 INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
@@ -1583,45 +1587,14 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
     *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[6*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[7*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    const real Z_t_z_of_legs = sums[8*w + k];
-    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_xz + M_tt_yy)) + ((M_tt_yz + M_tt_zz) + (Z_t_x
-        + (Z_t_y + Z_t_z)));
+    any_after(m, w, k, sums, M, t);
+    any_after_2(m, w, k, sums + 6*w, Z, t);
 }
 
 #define SUMS_OF_dynamics ((size_t)9)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, status_flags *t)
 {
     real sums[SUMS_OF_dynamics] CLEARED;
     real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
@@ -1674,32 +1647,12 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
+    any_after(m, w, k, sums, M, t);
 }
 
 #define SUMS_OF_M ((size_t)6)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[SUMS_OF_M] CLEARED;
     real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
@@ -1716,7 +1669,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real sums[SUMS_OF_M*LANES];
@@ -1753,18 +1706,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
+    any_after_2(m, w, k, sums, Z, t);
 }
 
 #define SUMS_OF_Z ((size_t)3)
@@ -1786,7 +1728,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real sums[SUMS_OF_Z*LANES];
@@ -1820,7 +1762,7 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z);
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -1876,15 +1818,14 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(&v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (ups-c) */
     const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
     const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
     const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
@@ -1903,7 +1844,7 @@ INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[0*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -1944,8 +1885,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[4*LANES];
@@ -1976,21 +1917,21 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-q_1) displacement of joint 1 */
+    /* (ups-q_1) */
     const real ups_q_1 = angle(v.inv_ups_root_1*ups_S_in_turn1_y,
         v.inv_ups_root_1*ups_S_in_turn1_x);
-    /* (ups-q_2) displacement of joint 2 */
+    /* (ups-q_2) */
     const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
     o[1*count + k] = ups_q_2;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     o[2*count + k] = v.ups_q_3;
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1);
@@ -2007,7 +1948,8 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2042,9 +1984,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
-    /* (ups-qd_1) rate of joint 1 */
+    /* (ups-qd_1) */
     o[0*count + k] = v.ups_qd_1;
-    /* (ups-qd_2) rate of joint 2 */
+    /* (ups-qd_2) */
     o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
@@ -2062,8 +2004,8 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2100,11 +2042,11 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     stage_ups_A_X(w, j, A, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(&v);
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    /* (ups-rel) */
     const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
-    /* (ups-qdd_1) acceleration of joint 1 */
+    /* (ups-qdd_1) */
     o[0*count + k] = v.ups_qdd_1;
-    /* (ups-qdd_2) acceleration of joint 2 */
+    /* (ups-qdd_2) */
     o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
@@ -2122,8 +2064,8 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2161,7 +2103,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_A_V_X(&v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (ups-acc_3) */
     const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
     const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
     const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
@@ -2185,7 +2127,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = ups_c_true_x;
     o[1*count + k] = ups_c_true_y;
     o[2*count + k] = ups_c_true_z;
-    /* (ups-w_3) reciprocal vector 3 */
+    /* (ups-w_3) */
     o[3*count + k] = v.axis_x_ups_axes2_x;
     o[4*count + k] = v.axis_x_ups_axes2_y;
     o[5*count + k] = v.axis_x_ups_axes2_z;
@@ -2222,7 +2164,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 /* ---- potential ---- */
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -2237,12 +2179,12 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    /* (ups-S) from the base point to the connection point */
+    /* (ups-S) */
     const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
         v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
         v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    /* (ups-root_1) */
     const real ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
     const real ups_root_1_2 = m->ups_branch_1[i]*root(ups_root_1_t_5);
@@ -2251,10 +2193,10 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     const real ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x;
     /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
     const real ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y;
-    /* (ups-q_3) displacement of joint 3 */
+    /* (ups-q_3) */
     const real ups_q_3_t_3 = v.ups_q_3_t + ups_root_1_t_5;
     const real ups_q_3_2 = m->ups_branch_2[i]*root(ups_q_3_t_3);
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    /* (ups-c_2) */
     const real inv_ups_q_3_2 = 1/ups_q_3_2;
     const real ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2;
     /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
@@ -2317,7 +2259,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
 INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
     *t)
 {
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
 }
@@ -2365,7 +2307,7 @@ INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_ups = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_ups);
     /* (spread) */
@@ -2375,8 +2317,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, status_flags *t)
 {
     real sums[SUMS_OF_condition] CLEARED;
     real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
@@ -2397,7 +2339,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 /* ---- what users call, as steps over these ---- */
 
-int tripod_3ups_M(const prepared *m, const real *X, real *M_out)
+NARROW int tripod_3ups_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -2420,7 +2362,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int tripod_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int tripod_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -2444,7 +2386,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int tripod_3ups_H(const prepared *m, const real *X, real *H_out)
+NARROW int tripod_3ups_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -2467,7 +2409,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int tripod_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -2490,7 +2432,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int tripod_3ups_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3ups_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2515,8 +2457,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int tripod_3ups_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3ups_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -2542,7 +2484,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int tripod_3ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int tripod_3ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     status_flags why;
@@ -2625,8 +2567,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1, 2};
 static const real sizes_tau[] = {0.25, 0.25, 1.0};
 
-int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out)
+NARROW int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
@@ -2675,8 +2617,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {4.0, 4.0, 4.0};
 
-int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out)
+NARROW int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
@@ -2732,8 +2674,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NV, A, A_out);
 }
 
-int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -2746,8 +2688,8 @@ int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
@@ -2765,8 +2707,8 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*NL, forces, forces_out, &why);
 }
 
-int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -2784,7 +2726,8 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
@@ -2803,7 +2746,7 @@ int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
@@ -2825,8 +2768,8 @@ int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
         singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
@@ -2847,7 +2790,7 @@ int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] CLEARED;
@@ -2862,7 +2805,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(NU, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -2919,8 +2862,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -2930,7 +2873,7 @@ int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -2946,7 +2889,8 @@ int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -2957,7 +2901,7 @@ int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -2973,7 +2917,7 @@ int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -2987,7 +2931,7 @@ int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -2998,7 +2942,8 @@ int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -3009,8 +2954,8 @@ int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -3021,8 +2966,8 @@ int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int tripod_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int tripod_3ups_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -3034,7 +2979,7 @@ int tripod_3ups_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] CLEARED;
     status_flags why;
@@ -3046,7 +2991,7 @@ int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
+NARROW int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] CLEARED;
     status_flags why;
@@ -3058,7 +3003,7 @@ int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;

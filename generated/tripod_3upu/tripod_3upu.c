@@ -40,6 +40,13 @@ enum {
 #define APART static
 #endif
 
+/* Few legs of one state fill half of the longest vectors.  One whole vector elsewhere, such as gcc
+   puts entries of M together in, would make all others wait. */
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define NARROW __attribute__((target("prefer-vector-width=256")))
+#else
+#define NARROW
+#endif
 /* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
@@ -53,10 +60,16 @@ enum {
 #else
 #define LONGEST VECTOR
 #endif
+/* Whether there are vectors of a type; of long double there are none. */
+#define VECTORS_OF_float 1
+#define VECTORS_OF_double 1
+#define VECTORS_OF_long 0*
+#define JOINED(type) VECTORS_OF_##type
+#define VECTORS_OF(type) JOINED(type)
 /* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
    vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
    arrays on its stack it leaves across cache lines. */
-#if defined(__clang__) && VECTOR > 1 && TRIPOD_3UPU_LANES >= 4
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3UPU_LANES >= 4 && VECTORS_OF(TRIPOD_3UPU_REAL)
 #pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
@@ -66,7 +79,11 @@ enum {
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
 #define ALIGNED __attribute__((aligned(LONGEST)))
+typedef real states __attribute__((vector_size(LANES*sizeof(real))));  /* one value of each */
+#define EVERY_ENTRY(size) for (size_t k = 0; k < LANES; ++k) for (size_t e = 0; e < (size); ++e)
 #else
+typedef real states[LANES];
+#define EVERY_ENTRY(size) for (size_t e = 0; e < (size); ++e) for (size_t k = 0; k < LANES; ++k)
 #define IN_VECTORS(n)
 #define SHORT_IN_VECTORS
 #define WIDE
@@ -277,11 +294,13 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
-        for (size_t k = 0; k < LANES; ++k) {
-            total[k] += x[e*LANES + k];
+    SHORT_IN_VECTORS
+    for (size_t k = 0; k < LANES; ++k) {
+        real sum = total[k];
+        for (size_t e = 0; e < size; ++e) {
+            sum += x[e*LANES + k];
         }
+        total[k] = sum;
     }
 }
 
@@ -290,10 +309,11 @@ INLINE const real *side_by_side(size_t size, const real *restrict x, real *restr
     real *total)
 {
     for (size_t e = 0; e < size; ++e) {
-        SHORT_IN_VECTORS
+        states entry;
         for (size_t k = 0; k < LANES; ++k) {
-            lanes[e*LANES + k] = x[size*k + e];
+            entry[k] = x[size*k + e];
         }
+        memcpy(lanes + e*LANES, &entry, LANES*sizeof *lanes);
     }
     add_up(size, lanes, total);
     return lanes;
@@ -395,11 +415,8 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    IN_VECTORS(LANES)
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
-        }
+    EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
     }
 }
 
@@ -606,8 +623,9 @@ static int acceptable(const tripod_3upu_params *p)
     return ok;
 }
 
-#define KEEP(name) model->name = name
-#define KEEP_OF_LEG(name) model->name[leg] = name
+/* A value for the model, which may be read here too. */
+#define KEEP(name, value) const real name = model->name = (value); (void)name
+#define KEEP_OF_LEG(name, value) const real name = model->name[leg] = (value); (void)name
 
 int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *model)
 {
@@ -618,10 +636,10 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     real b_c_upu_in_platform_x = 0;
     real b_c_upu_in_platform_y = 0;
     real b_c_upu_in_platform_z = 0;
-    const real gravity_x = params->gravity[0];
-    const real gravity_y = params->gravity[1];
-    const real gravity_z = params->gravity[2];
-    const real platform_mass = params->platform_mass;
+    KEEP(gravity_x, params->gravity[0]);
+    KEEP(gravity_y, params->gravity[1]);
+    KEEP(gravity_z, params->gravity[2]);
+    KEEP(platform_mass, params->platform_mass);
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_centre_of_mass_z = params->platform_centre_of_mass[2];
@@ -632,82 +650,62 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = platform_centre_of_mass_x*platform_mass;
-    const real h_star_in_platform_y = platform_centre_of_mass_y*platform_mass;
-    const real h_star_in_platform_z = platform_centre_of_mass_z*platform_mass;
+    KEEP(h_star_in_platform_x, platform_centre_of_mass_x*platform_mass);
+    KEEP(h_star_in_platform_y, platform_centre_of_mass_y*platform_mass);
+    KEEP(h_star_in_platform_z, platform_centre_of_mass_z*platform_mass);
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
     const real J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3;
-    const real J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t -
-        J_star_t_4);
-    const real J_star_in_platform_xy = platform_inertia_xy -
-        platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass;
-    const real J_star_in_platform_xz = platform_inertia_xz -
-        platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass;
-    const real J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 -
-        J_star_t_4);
-    const real J_star_in_platform_yz = platform_inertia_yz -
-        platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
-    const real J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 -
-        J_star_t_4);
+    KEEP(J_star_in_platform_xx, platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4));
+    KEEP(J_star_in_platform_xy, platform_inertia_xy -
+        platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass);
+    KEEP(J_star_in_platform_xz, platform_inertia_xz -
+        platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass);
+    KEEP(J_star_in_platform_yy, platform_inertia_yy - platform_mass*(J_star_t_2 -
+        J_star_t_4));
+    KEEP(J_star_in_platform_yz, platform_inertia_yz -
+        platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass);
+    KEEP(J_star_in_platform_zz, platform_inertia_zz - platform_mass*(J_star_t_3 -
+        J_star_t_4));
     const real J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy;
-    const real J_star_t_6 = R(0.5)*J_star_t_5;
+    KEEP(J_star_t_6, R(0.5)*J_star_t_5);
     const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
-    const real J_star_t_8 = R(0.5)*J_star_t_7;
-    const real J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy +
-        J_star_in_platform_zz;
+    KEEP(J_star_t_8, R(0.5)*J_star_t_7);
+    KEEP(J_star_t_9, J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_t = gravity_x*platform_mass;
-    const real Z_p_t_2 = gravity_y*platform_mass;
-    const real Z_p_t_3 = gravity_z*platform_mass;
+    KEEP(Z_p_t, gravity_x*platform_mass);
+    KEEP(Z_p_t_2, gravity_y*platform_mass);
+    KEEP(Z_p_t_3, gravity_z*platform_mass);
     /* (spread) rms distance of the platform points from their centroid */
-    const real spread_t = R(0.3333333333333333)*root(3);
+    KEEP(spread_t, R(0.3333333333333333)*root(3));
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = R(1.385640646055102)*spread_t;
-    KEEP(J_star_in_platform_xx);
-    KEEP(J_star_in_platform_xy);
-    KEEP(J_star_in_platform_xz);
-    KEEP(J_star_in_platform_yy);
-    KEEP(J_star_in_platform_yz);
-    KEEP(J_star_in_platform_zz);
-    KEEP(J_star_t_6);
-    KEEP(J_star_t_8);
-    KEEP(J_star_t_9);
-    KEEP(Z_p_t);
-    KEEP(Z_p_t_2);
-    KEEP(Z_p_t_3);
-    KEEP(gravity_x);
-    KEEP(gravity_y);
-    KEEP(gravity_z);
-    KEEP(h_star_in_platform_x);
-    KEEP(h_star_in_platform_y);
-    KEEP(h_star_in_platform_z);
-    KEEP(legs_size);
-    KEEP(platform_mass);
-    KEEP(spread_t);
+    KEEP(legs_size, R(1.385640646055102)*spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_upu); ++leg) {
         const size_t own = leg < LEGS_OF_upu ? leg : 0;
-        const real upu_base_point_x = params->upu_base_point[own][0];
-        const real upu_base_point_y = params->upu_base_point[own][1];
-        const real upu_base_point_z = params->upu_base_point[own][2];
-        const real upu_base_frame_xx = params->upu_base_frame[own][0][0];
-        const real upu_base_frame_xy = params->upu_base_frame[own][0][1];
-        const real upu_base_frame_xz = params->upu_base_frame[own][0][2];
-        const real upu_base_frame_yx = params->upu_base_frame[own][1][0];
-        const real upu_base_frame_yy = params->upu_base_frame[own][1][1];
-        const real upu_base_frame_yz = params->upu_base_frame[own][1][2];
-        const real upu_base_frame_zx = params->upu_base_frame[own][2][0];
-        const real upu_base_frame_zy = params->upu_base_frame[own][2][1];
-        const real upu_base_frame_zz = params->upu_base_frame[own][2][2];
-        const real upu_platform_point_x = params->upu_platform_point[own][0];
-        const real upu_platform_point_y = params->upu_platform_point[own][1];
-        const real upu_platform_point_z = params->upu_platform_point[own][2];
-        const real upu_platform_joint_axis_platform_x = params->upu_platform_joint_axis_platform[own][0];
-        const real upu_platform_joint_axis_platform_y = params->upu_platform_joint_axis_platform[own][1];
-        const real upu_platform_joint_axis_platform_z = params->upu_platform_joint_axis_platform[own][2];
-        const real upu_link2_mass = params->upu_link2_mass[own];
+        KEEP_OF_LEG(upu_base_point_x, params->upu_base_point[own][0]);
+        KEEP_OF_LEG(upu_base_point_y, params->upu_base_point[own][1]);
+        KEEP_OF_LEG(upu_base_point_z, params->upu_base_point[own][2]);
+        KEEP_OF_LEG(upu_base_frame_xx, params->upu_base_frame[own][0][0]);
+        KEEP_OF_LEG(upu_base_frame_xy, params->upu_base_frame[own][0][1]);
+        KEEP_OF_LEG(upu_base_frame_xz, params->upu_base_frame[own][0][2]);
+        KEEP_OF_LEG(upu_base_frame_yx, params->upu_base_frame[own][1][0]);
+        KEEP_OF_LEG(upu_base_frame_yy, params->upu_base_frame[own][1][1]);
+        KEEP_OF_LEG(upu_base_frame_yz, params->upu_base_frame[own][1][2]);
+        KEEP_OF_LEG(upu_base_frame_zx, params->upu_base_frame[own][2][0]);
+        KEEP_OF_LEG(upu_base_frame_zy, params->upu_base_frame[own][2][1]);
+        KEEP_OF_LEG(upu_base_frame_zz, params->upu_base_frame[own][2][2]);
+        KEEP_OF_LEG(upu_platform_point_x, params->upu_platform_point[own][0]);
+        KEEP_OF_LEG(upu_platform_point_y, params->upu_platform_point[own][1]);
+        KEEP_OF_LEG(upu_platform_point_z, params->upu_platform_point[own][2]);
+        KEEP_OF_LEG(upu_platform_joint_axis_platform_x,
+            params->upu_platform_joint_axis_platform[own][0]);
+        KEEP_OF_LEG(upu_platform_joint_axis_platform_y,
+            params->upu_platform_joint_axis_platform[own][1]);
+        KEEP_OF_LEG(upu_platform_joint_axis_platform_z,
+            params->upu_platform_joint_axis_platform[own][2]);
+        KEEP_OF_LEG(upu_link2_mass, params->upu_link2_mass[own]);
         const real upu_link2_centre_of_mass_x = params->upu_link2_centre_of_mass[own][0];
         const real upu_link2_centre_of_mass_y = params->upu_link2_centre_of_mass[own][1];
         const real upu_link2_centre_of_mass_z = params->upu_link2_centre_of_mass[own][2];
@@ -717,7 +715,7 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         const real upu_link2_inertia_yy = params->upu_link2_inertia[own][1][1];
         const real upu_link2_inertia_yz = params->upu_link2_inertia[own][1][2];
         const real upu_link2_inertia_zz = params->upu_link2_inertia[own][2][2];
-        const real upu_link3_mass = params->upu_link3_mass[own];
+        KEEP_OF_LEG(upu_link3_mass, params->upu_link3_mass[own]);
         const real upu_link3_centre_of_mass_x = params->upu_link3_centre_of_mass[own][0];
         const real upu_link3_centre_of_mass_y = params->upu_link3_centre_of_mass[own][1];
         const real upu_link3_centre_of_mass_z = params->upu_link3_centre_of_mass[own][2];
@@ -728,24 +726,24 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         const real upu_link3_inertia_yz = params->upu_link3_inertia[own][1][2];
         const real upu_link3_inertia_zz = params->upu_link3_inertia[own][2][2];
         static const signed char signs_upu_branch_1[] = {1, 1, 1};
-        const real upu_branch_1 = signs_upu_branch_1[own];
+        KEEP_OF_LEG(upu_branch_1, signs_upu_branch_1[own]);
         static const signed char signs_upu_branch_2[] = {1, 1, 1};
-        const real upu_branch_2 = signs_upu_branch_2[own];
+        KEEP_OF_LEG(upu_branch_2, signs_upu_branch_2[own]);
         /* (upu-h_2) first moment of link 2 about the origin of link 2 */
-        const real upu_h_2_in_spec2_x = upu_link2_centre_of_mass_x*upu_link2_mass;
-        const real upu_h_2_in_spec2_y = upu_link2_centre_of_mass_y*upu_link2_mass;
-        const real upu_h_2_in_spec2_z = upu_link2_centre_of_mass_z*upu_link2_mass;
+        KEEP_OF_LEG(upu_h_2_in_spec2_x, upu_link2_centre_of_mass_x*upu_link2_mass);
+        KEEP_OF_LEG(upu_h_2_in_spec2_y, upu_link2_centre_of_mass_y*upu_link2_mass);
+        KEEP_OF_LEG(upu_h_2_in_spec2_z, upu_link2_centre_of_mass_z*upu_link2_mass);
         /* (upu-h_3) first moment of link 3 about the origin of link 3 */
-        const real upu_h_3_in_spec2_x = upu_link3_centre_of_mass_x*upu_link3_mass;
-        const real upu_h_3_in_spec2_y = upu_link3_centre_of_mass_y*upu_link3_mass;
-        const real upu_h_3_in_spec2_z = upu_link3_centre_of_mass_z*upu_link3_mass;
+        KEEP_OF_LEG(upu_h_3_in_spec2_x, upu_link3_centre_of_mass_x*upu_link3_mass);
+        KEEP_OF_LEG(upu_h_3_in_spec2_y, upu_link3_centre_of_mass_y*upu_link3_mass);
+        KEEP_OF_LEG(upu_h_3_in_spec2_z, upu_link3_centre_of_mass_z*upu_link3_mass);
         /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real upu_acc_3_t = gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx +
-            gravity_z*upu_base_frame_zx;
-        const real upu_acc_3_t_2 = gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy +
-            gravity_z*upu_base_frame_zy;
-        const real upu_acc_3_t_3 = gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz +
-            gravity_z*upu_base_frame_zz;
+        KEEP_OF_LEG(upu_acc_3_t, gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx +
+            gravity_z*upu_base_frame_zx);
+        KEEP_OF_LEG(upu_acc_3_t_2, gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy +
+            gravity_z*upu_base_frame_zy);
+        KEEP_OF_LEG(upu_acc_3_t_3, gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz +
+            gravity_z*upu_base_frame_zz);
         /* (upu-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real upu_J_group_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x;
         const real upu_J_group_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y;
@@ -755,94 +753,50 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         const real upu_J_group_2_t_6 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y;
         const real upu_J_group_2_t_7 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z;
         const real upu_J_group_2_t_8 = upu_J_group_2_t_5 + upu_J_group_2_t_6 + upu_J_group_2_t_7;
-        const real upu_J_group_2_in_axes2_xx = upu_link2_inertia_xx + upu_link3_inertia_xx -
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_xx, upu_link2_inertia_xx + upu_link3_inertia_xx -
             upu_link2_mass*(upu_J_group_2_t - upu_J_group_2_t_4) -
-            upu_link3_mass*(upu_J_group_2_t_5 - upu_J_group_2_t_8);
-        const real upu_J_group_2_in_axes2_xy =
+            upu_link3_mass*(upu_J_group_2_t_5 - upu_J_group_2_t_8));
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_xy,
             upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_z*upu_link2_mass +
             upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_z*upu_link3_mass -
-            upu_link2_inertia_xz - upu_link3_inertia_xz;
-        const real upu_J_group_2_in_axes2_xz = upu_link2_inertia_xy + upu_link3_inertia_xy -
+            upu_link2_inertia_xz - upu_link3_inertia_xz);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_xz, upu_link2_inertia_xy + upu_link3_inertia_xy -
             upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_y*upu_link2_mass -
-            upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_y*upu_link3_mass;
-        const real upu_J_group_2_in_axes2_yy = upu_link2_inertia_zz + upu_link3_inertia_zz -
+            upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_y*upu_link3_mass);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_yy, upu_link2_inertia_zz + upu_link3_inertia_zz -
             upu_link2_mass*(upu_J_group_2_t_3 - upu_J_group_2_t_4) -
-            upu_link3_mass*(upu_J_group_2_t_7 - upu_J_group_2_t_8);
-        const real upu_J_group_2_in_axes2_yz =
+            upu_link3_mass*(upu_J_group_2_t_7 - upu_J_group_2_t_8));
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_yz,
             upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_z*upu_link2_mass +
             upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_z*upu_link3_mass -
-            upu_link2_inertia_yz - upu_link3_inertia_yz;
-        const real upu_J_group_2_in_axes2_zz = upu_link2_inertia_yy + upu_link3_inertia_yy -
+            upu_link2_inertia_yz - upu_link3_inertia_yz);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_zz, upu_link2_inertia_yy + upu_link3_inertia_yy -
             upu_link2_mass*(upu_J_group_2_t_2 - upu_J_group_2_t_4) -
-            upu_link3_mass*(upu_J_group_2_t_6 - upu_J_group_2_t_8);
+            upu_link3_mass*(upu_J_group_2_t_6 - upu_J_group_2_t_8));
         /* (upu-Sigma_2) second moment of mass of the links that turn with link 2 */
         const real upu_Sigma_2_t = upu_J_group_2_in_axes2_xx + upu_J_group_2_in_axes2_yy +
             upu_J_group_2_in_axes2_zz;
         const real upu_Sigma_2_t_2 = R(0.5)*upu_Sigma_2_t;
-        const real upu_Sigma_2_in_axes2_xx = upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_xx;
-        const real upu_Sigma_2_in_axes2_yy = upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_yy;
-        const real upu_Sigma_2_in_axes2_zz = upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_zz;
+        KEEP_OF_LEG(upu_Sigma_2_in_axes2_xx, upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(upu_Sigma_2_in_axes2_yy, upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(upu_Sigma_2_in_axes2_zz, upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_zz);
         /* (potential) potential energy */
-        const real upu_potential_t = upu_base_frame_xx*upu_base_point_x +
-            upu_base_frame_yx*upu_base_point_y + upu_base_frame_zx*upu_base_point_z;
-        const real upu_potential_t_2 = upu_base_frame_xy*upu_base_point_x +
-            upu_base_frame_yy*upu_base_point_y + upu_base_frame_zy*upu_base_point_z;
-        const real upu_potential_t_3 = upu_base_frame_xz*upu_base_point_x +
-            upu_base_frame_yz*upu_base_point_y + upu_base_frame_zz*upu_base_point_z;
-        KEEP_OF_LEG(upu_J_group_2_in_axes2_xx);
-        KEEP_OF_LEG(upu_J_group_2_in_axes2_xy);
-        KEEP_OF_LEG(upu_J_group_2_in_axes2_xz);
-        KEEP_OF_LEG(upu_J_group_2_in_axes2_yy);
-        KEEP_OF_LEG(upu_J_group_2_in_axes2_yz);
-        KEEP_OF_LEG(upu_J_group_2_in_axes2_zz);
-        KEEP_OF_LEG(upu_Sigma_2_in_axes2_xx);
-        KEEP_OF_LEG(upu_Sigma_2_in_axes2_yy);
-        KEEP_OF_LEG(upu_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(upu_acc_3_t);
-        KEEP_OF_LEG(upu_acc_3_t_2);
-        KEEP_OF_LEG(upu_acc_3_t_3);
-        KEEP_OF_LEG(upu_base_frame_xx);
-        KEEP_OF_LEG(upu_base_frame_xy);
-        KEEP_OF_LEG(upu_base_frame_xz);
-        KEEP_OF_LEG(upu_base_frame_yx);
-        KEEP_OF_LEG(upu_base_frame_yy);
-        KEEP_OF_LEG(upu_base_frame_yz);
-        KEEP_OF_LEG(upu_base_frame_zx);
-        KEEP_OF_LEG(upu_base_frame_zy);
-        KEEP_OF_LEG(upu_base_frame_zz);
-        KEEP_OF_LEG(upu_base_point_x);
-        KEEP_OF_LEG(upu_base_point_y);
-        KEEP_OF_LEG(upu_base_point_z);
-        KEEP_OF_LEG(upu_branch_1);
-        KEEP_OF_LEG(upu_branch_2);
-        KEEP_OF_LEG(upu_h_2_in_spec2_x);
-        KEEP_OF_LEG(upu_h_2_in_spec2_y);
-        KEEP_OF_LEG(upu_h_2_in_spec2_z);
-        KEEP_OF_LEG(upu_h_3_in_spec2_x);
-        KEEP_OF_LEG(upu_h_3_in_spec2_y);
-        KEEP_OF_LEG(upu_h_3_in_spec2_z);
-        KEEP_OF_LEG(upu_link2_mass);
-        KEEP_OF_LEG(upu_link3_mass);
-        KEEP_OF_LEG(upu_platform_joint_axis_platform_x);
-        KEEP_OF_LEG(upu_platform_joint_axis_platform_y);
-        KEEP_OF_LEG(upu_platform_joint_axis_platform_z);
-        KEEP_OF_LEG(upu_platform_point_x);
-        KEEP_OF_LEG(upu_platform_point_y);
-        KEEP_OF_LEG(upu_platform_point_z);
-        KEEP_OF_LEG(upu_potential_t);
-        KEEP_OF_LEG(upu_potential_t_2);
-        KEEP_OF_LEG(upu_potential_t_3);
-        b_c_upu_in_platform_x += leg < LEGS_OF_upu ? upu_platform_point_x : 0;
-        b_c_upu_in_platform_y += leg < LEGS_OF_upu ? upu_platform_point_y : 0;
-        b_c_upu_in_platform_z += leg < LEGS_OF_upu ? upu_platform_point_z : 0;
+        KEEP_OF_LEG(upu_potential_t, upu_base_frame_xx*upu_base_point_x +
+            upu_base_frame_yx*upu_base_point_y + upu_base_frame_zx*upu_base_point_z);
+        KEEP_OF_LEG(upu_potential_t_2, upu_base_frame_xy*upu_base_point_x +
+            upu_base_frame_yy*upu_base_point_y + upu_base_frame_zy*upu_base_point_z);
+        KEEP_OF_LEG(upu_potential_t_3, upu_base_frame_xz*upu_base_point_x +
+            upu_base_frame_yz*upu_base_point_y + upu_base_frame_zz*upu_base_point_z);
+        if (leg < LEGS_OF_upu) {
+            b_c_upu_in_platform_x += upu_platform_point_x;
+            b_c_upu_in_platform_y += upu_platform_point_y;
+            b_c_upu_in_platform_z += upu_platform_point_z;
+        }
     }
     /* (b_c) centroid of the platform points */
-    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_upu_in_platform_x;
-    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_upu_in_platform_y;
-    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_upu_in_platform_z;
-    KEEP(b_c_in_platform_x);
-    KEEP(b_c_in_platform_y);
-    KEEP(b_c_in_platform_z);
+    KEEP(b_c_in_platform_x, R(0.3333333333333333)*b_c_upu_in_platform_x);
+    KEEP(b_c_in_platform_y, R(0.3333333333333333)*b_c_upu_in_platform_y);
+    KEEP(b_c_in_platform_z, R(0.3333333333333333)*b_c_upu_in_platform_z);
     return OK;
 }
 
@@ -1645,14 +1599,14 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
         v->R_xx*m->h_star_in_platform_x;
     v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
         v->R_yy*m->h_star_in_platform_y;
     v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
         v->R_zz*m->h_star_in_platform_z;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
@@ -1691,7 +1645,7 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
 {
-    /* (Z_p) centripetal force and weight of the platform */
+    /* (Z_p) */
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
     const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
@@ -1843,7 +1797,7 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->upu_n_c_z = v->axis_z_upu_axes2_z*v->upu_n_c_in_axes2_z;
     /* (upu-nd_m1) rate of moment direction 1 */
     v->upu_end_p1_in_axes2_z = v->upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*v->upu_s_1;
-    /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (upu-acc_3) */
     const real upu_acc_3_t_4 = m->upu_acc_3_t[i]*v->upu_c_1 + m->upu_acc_3_t_2[i]*v->upu_s_1;
     v->upu_g_in_axes2_z = m->upu_acc_3_t_2[i]*v->upu_c_1 - m->upu_acc_3_t[i]*v->upu_s_1;
     v->upu_g_in_axes2_x = m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x +
@@ -1870,7 +1824,7 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
 INLINE void stage_upu_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_upu *v)
 {
-    /* (upu-S_dot) velocity of the connection point */
+    /* (upu-S_dot) */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
     const real upu_S_dot_t_3 = omega_y*v->upu_q_z - omega_z*v->upu_q_y;
@@ -1921,7 +1875,7 @@ INLINE void stage_upu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->upu_f_3_t_2 = v->upu_W_2_t_3*m->upu_h_3_in_spec2_x[i];
     v->upu_f_3_t_3 = m->upu_h_3_in_spec2_z[i]*(upu_f_3_t + upu_W_2_t_2);
     v->upu_f_3_t_4 = m->upu_h_3_in_spec2_y[i]*(upu_W_2_t + upu_f_3_t);
-    /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (upu-mu_2) */
     v->upu_mu_2_t = m->upu_J_group_2_in_axes2_yz[i]*(upu_W_2_t - upu_W_2_t_2);
     v->upu_mu_2_t_2 = m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_t - upu_W_2_t_2);
     v->upu_mu_2_t_3 = m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t - upu_W_2_t);
@@ -1956,7 +1910,7 @@ INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
         v->upu_bias_in_axes2_z;
     /* (upu-qdd_1) acceleration of joint 1 */
     v->upu_qdd_1 = v->inv_upu_root_1*upu_rel_in_axes2_z;
-    /* (upu-qdd_2) acceleration of joint 2 */
+    /* (upu-qdd_2) */
     v->upu_qdd_2_t_2 = v->axis_y_upu_axes2_x*upu_S_ddot_x + v->axis_y_upu_axes2_y*upu_S_ddot_y
         + v->axis_y_upu_axes2_z*upu_S_ddot_z - v->upu_qdd_2_t;
     v->upu_qdd_2_t_3 = v->inv_upu_q_3*v->upu_qdd_2_t_2;
@@ -2058,12 +2012,12 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
     const real upu_B_2_in_axes2_xy = v->upu_W_2_in_axes2_xy - v->upu_qdd_2;
     const real upu_B_2_in_axes2_zx = v->upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y;
     const real upu_B_2_in_axes2_zy = v->upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x;
-    /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
+    /* (upu-acc_3) */
     const real upu_acc_3_in_axes2_x = v->upu_S_ddot_in_axes2_x - v->upu_g_in_axes2_x;
     const real upu_acc_3_in_axes2_y = v->upu_qdd_2_t - v->upu_g_in_axes2_y + v->upu_qdd_2_t_2;
     const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*v->upu_q_3 - v->upu_g_in_axes2_z -
         v->upu_bias_t_2;
-    /* (upu-f_3) inertia force of link 3 less its weight */
+    /* (upu-f_3) */
     const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] - v->upu_f_3_t_2
         + upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
         upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i];
@@ -2073,7 +2027,7 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
     const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
         v->upu_f_3_t_4 - upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
         upu_acc_3_in_axes2_z*m->upu_link3_mass[i];
-    /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    /* (upu-mu_2) */
     const real upu_mu_2_in_axes2_x = v->upu_mu_2_t_4 + v->upu_mu_2_t +
         m->upu_J_group_2_in_axes2_xz[i]*v->upu_qdd_2_t_3 -
         upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
@@ -2196,7 +2150,7 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
 
 INLINE void stage_upu_constraint_bias_dynamics(size_t w, size_t j, const real *V, values_upu *v)
 {
-    /* (upu-nd_m1) rate of moment direction 1 */
+    /* (upu-nd_m1) */
     const real omega_x = V[3*w + j];
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
@@ -2260,7 +2214,7 @@ INLINE void any_sums_upu(size_t k, size_t count, int add, const values_upu *v, r
     gather(&terms[3*count + k], add, v->upu_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->upu_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->upu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
+    /* (M_ta) */
     gather(&terms[6*count + k], add, v->upu_M_ta_t_3);  /* M_ta_xx */
     gather(&terms[7*count + k], add, v->upu_M_ta_t_4);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v->upu_M_ta_t_5);  /* M_ta_xz_of_legs */
@@ -2270,7 +2224,7 @@ INLINE void any_sums_upu(size_t k, size_t count, int add, const values_upu *v, r
     gather(&terms[12*count + k], add, v->upu_M_ta_t_10);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->upu_M_ta_t_11);  /* M_ta_zy_of_legs */
     gather(&terms[14*count + k], add, v->upu_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
+    /* (M_aa) */
     gather(&terms[15*count + k], add, v->upu_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[16*count + k], add, v->upu_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[17*count + k], add, v->upu_M_aa_t_3);  /* M_aa_xz_of_legs */
@@ -2285,7 +2239,7 @@ INLINE void any_sums_upu_2(size_t k, size_t count, int add, const values_upu *v,
     gather(&terms[0*count + k], add, v->upu_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v->upu_U_y);  /* Z_t_y_of_legs */
     gather(&terms[2*count + k], add, v->upu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
+    /* (Z_a) */
     gather(&terms[3*count + k], add, v->upu_Z_a_t);  /* Z_a_x_of_legs */
     gather(&terms[4*count + k], add, v->upu_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v->upu_Z_a_t_3);  /* Z_a_z_of_legs */
@@ -2297,7 +2251,7 @@ INLINE void any_entries_upu(size_t k, size_t count, const values_upu *v, real *o
     o[0*count + k] = v->axis_x_upu_axes2_x;
     o[1*count + k] = v->axis_x_upu_axes2_y;
     o[2*count + k] = v->axis_x_upu_axes2_z;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    /* (upu-H_a_3) */
     o[3*count + k] = v->upu_H_a_3_x;
     o[4*count + k] = v->upu_H_a_3_y;
     o[5*count + k] = v->upu_H_a_3_z;
@@ -2305,21 +2259,14 @@ INLINE void any_entries_upu(size_t k, size_t count, const values_upu *v, real *o
 
 INLINE void any_entries_upu_2(size_t k, size_t count, const values_upu *v, real *o)
 {
-    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    /* (upu-n_c) */
     o[0*count + k] = v->upu_n_c_x;
     o[1*count + k] = v->upu_n_c_y;
     o[2*count + k] = v->upu_n_c_z;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    /* (upu-Hk_a_1) */
     o[3*count + k] = v->upu_Hk_a_1_x;
     o[4*count + k] = v->upu_Hk_a_1_y;
     o[5*count + k] = v->upu_Hk_a_1_z;
-}
-
-INLINE void any_entries_upu_3(size_t k, size_t count, const values_upu *v, real *o)
-{
-    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    o[0*count + k] = v->upu_gamma_c1;
 }
 
 INLINE void any_singular_upu(size_t k, const values_upu *v, real *o)
@@ -2327,6 +2274,136 @@ INLINE void any_singular_upu(size_t k, const values_upu *v, real *o)
     o[k] = UNLESS(magnitude(v->upu_root_1_t) > LEAST_1) + UNLESS(magnitude(v->upu_q_3_t) >
         LEAST_1) + UNLESS(magnitude(v->upu_q_3) > LEAST_2) + UNLESS(magnitude(v->upu_root_1) >
         LEAST_2) + UNLESS(magnitude(v->upu_volume_c_t) > LEAST_3);
+}
+
+INLINE void any_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, status_flags *t)
+{
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[2*w + k];
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[1*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[0*w + k];
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[3*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[6*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[7*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[4*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[8*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[5*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
+}
+
+INLINE void any_after_2(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags
+    *t)
+{
+    /* (Z_t) */
+    const real Z_p_x = s[0*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[1*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[2*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[3*w + k];
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[4*w + k];
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[5*w + k];
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void any_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2412,7 +2489,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     any_sums_upu_2(k, count, add, &v, terms + 21*count);
     any_entries_upu(k, count, &v, o);
     any_entries_upu_2(k, count, &v, o + 6*count);
-    any_entries_upu_3(k, count, &v, o + 12*count);
+    /* (upu-gamma_c1) */
+    o[12*count + k] = v.upu_gamma_c1;
     any_singular_upu(k, &v, o + 13*count);
     o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
         + (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
@@ -2443,132 +2521,15 @@ INLINE void dynamics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[30*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[31*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[32*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
+    any_after_2(w, k, s + 27*w, sums + 21*w, Z, t);
 }
 
 #define PASSED_IN_dynamics ((size_t)33)
 #define SUMS_OF_dynamics ((size_t)27)
 
-APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, status_flags *t)
+NARROW APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
     real terms_upu[SUMS_OF_dynamics*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
@@ -2631,103 +2592,13 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) translational block of M */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
-    const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
-    const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
-    /* (M_ta) coupling block of M */
-    const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[18*w + k];
-    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
-    const real M_ta_zy_of_legs = sums[13*w + k];
-    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) rotational block of M */
-    const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
-    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[24*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
-    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[25*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[22*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[26*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
-    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (M_tt) */
-    M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
-    const real M_tt_xz = sums[2*w + k];
-    M[2*w + k] = M_tt_xz;
-    M[2*NV*w + k] = M_tt_xz;
-    M[(NV + 1)*w + k] = M_tt_yy;
-    const real M_tt_yz = sums[4*w + k];
-    M[(NV + 2)*w + k] = M_tt_yz;
-    M[(2*NV + 1)*w + k] = M_tt_yz;
-    M[(2*NV + 2)*w + k] = M_tt_zz;
-    /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
-    M[3*w + k] = M_ta_xx;
-    M[3*NV*w + k] = M_ta_xx;
-    M[4*w + k] = M_ta_xy;
-    M[4*NV*w + k] = M_ta_xy;
-    M[5*w + k] = M_ta_xz;
-    M[5*NV*w + k] = M_ta_xz;
-    M[(NV + 3)*w + k] = M_ta_yx;
-    M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
-    M[(NV + 5)*w + k] = M_ta_yz;
-    M[(5*NV + 1)*w + k] = M_ta_yz;
-    M[(2*NV + 3)*w + k] = M_ta_zx;
-    M[(3*NV + 2)*w + k] = M_ta_zx;
-    M[(2*NV + 4)*w + k] = M_ta_zy;
-    M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
-    M[(2*NV + 5)*w + k] = M_ta_zz;
-    M[(5*NV + 2)*w + k] = M_ta_zz;
-    /* (M_aa) */
-    M[(3*NV + 3)*w + k] = M_aa_xx;
-    M[(3*NV + 4)*w + k] = M_aa_xy;
-    M[(4*NV + 3)*w + k] = M_aa_xy;
-    M[(3*NV + 5)*w + k] = M_aa_xz;
-    M[(5*NV + 3)*w + k] = M_aa_xz;
-    M[(4*NV + 4)*w + k] = M_aa_yy;
-    M[(4*NV + 5)*w + k] = M_aa_yz;
-    M[(5*NV + 4)*w + k] = M_aa_yz;
-    M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-        M_aa_zz))));
+    any_after(m, w, k, s + 18*w, sums, M, t);
 }
 
 #define PASSED_IN_M ((size_t)27)
 #define SUMS_OF_M ((size_t)21)
 
-APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
+NARROW APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
     real terms_upu[SUMS_OF_M*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
@@ -2746,7 +2617,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+APART void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
     ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
@@ -2798,35 +2669,7 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) translational part of Z */
-    const real Z_p_x = s[18*w + k];
-    const real Z_t_x_of_legs = sums[0*w + k];
-    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
-    const real Z_t_y_of_legs = sums[1*w + k];
-    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
-    const real Z_t_z_of_legs = sums[2*w + k];
-    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) rotational part of Z */
-    const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
-    /* (Z_t) */
-    Z[0*w + k] = Z_t_x;
-    Z[1*w + k] = Z_t_y;
-    Z[2*w + k] = Z_t_z;
-    /* (Z_a) */
-    Z[3*w + k] = Z_a_x;
-    Z[4*w + k] = Z_a_y;
-    Z[5*w + k] = Z_a_z;
-    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    any_after_2(w, k, s + 18*w, sums, Z, t);
 }
 
 #define PASSED_IN_Z ((size_t)24)
@@ -2852,7 +2695,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+APART void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
@@ -2907,7 +2750,7 @@ INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 #define PASSED_IN_H ((size_t)18)
 
-APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
+NARROW APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[PASSED_IN_H] CLEARED;
     real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
@@ -2971,7 +2814,7 @@ INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, 
 
 #define PASSED_IN_Hk ((size_t)18)
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
+NARROW APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
     real s[PASSED_IN_Hk] CLEARED;
     real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
@@ -3016,7 +2859,8 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_constraint_bias_dynamics(w, j, V, &v);
-    any_entries_upu_3(k, count, &v, o);
+    /* (upu-gamma_c1) */
+    o[0*count + k] = v.upu_gamma_c1;
     any_singular_upu(k, &v, o + 1*count);
     o[2*count + k] = v.upu_gamma_c1;
 }
@@ -3144,11 +2988,11 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y;
     const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z;
     const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x;
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.upu_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, v.upu_c_z);  /* R_t_z_of_legs */
@@ -3181,7 +3025,7 @@ INLINE void required_place_upu(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3191,7 +3035,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3238,8 +3082,8 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     required_after(1, 0, s, sums, required);
 }
 
-INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
+APART void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A, real
+    *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
     ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_upu[13*LANES];
@@ -3274,13 +3118,13 @@ INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, s
     stage_upu_X(m, w, i, j, s, X, &v);
     /* (upu-q_1) displacement of joint 1 */
     const real upu_q_1 = angle(v.upu_s_1, v.upu_c_1);
-    /* (upu-q_2) displacement of joint 2 */
+    /* (upu-q_2) */
     const real upu_q_2 = angle(-v.upu_e_1_in_axes2_x, v.upu_c_2);
     /* (upu-q_1) */
     o[0*count + k] = upu_q_1;
     /* (upu-q_2) */
     o[1*count + k] = upu_q_2;
-    /* (upu-q_3) displacement of joint 3 */
+    /* (upu-q_3) */
     o[2*count + k] = v.upu_q_3;
     o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1);
@@ -3299,7 +3143,8 @@ INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at
 
 #define PASSED_IN_inverse_kinematics ((size_t)18)
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
+NARROW APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags
+    *t)
 {
     real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
@@ -3343,9 +3188,9 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(m, w, i, j, V, &v);
-    /* (upu-qd_1) rate of joint 1 */
+    /* (upu-qd_1) */
     o[0*count + k] = v.upu_qd_1;
-    /* (upu-qd_2) rate of joint 2 */
+    /* (upu-qd_2) */
     o[1*count + k] = v.upu_qd_2;
     /* (upu-qd_3) rate of joint 3 */
     o[2*count + k] = v.upu_S_dot_in_axes2_x;
@@ -3365,8 +3210,8 @@ INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_joint_rates ((size_t)18)
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
-    *t)
+NARROW APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd,
+    status_flags *t)
 {
     real s[PASSED_IN_joint_rates] CLEARED;
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
@@ -3411,11 +3256,11 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, 
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
-    /* (upu-rel) acceleration of the connection point left to the joint accelerations */
+    /* (upu-rel) */
     const real upu_rel_in_axes2_x = v.upu_S_ddot_in_axes2_x + v.upu_W_2_t_3*v.upu_q_3;
-    /* (upu-qdd_1) acceleration of joint 1 */
+    /* (upu-qdd_1) */
     o[0*count + k] = v.upu_qdd_1;
-    /* (upu-qdd_2) acceleration of joint 2 */
+    /* (upu-qdd_2) */
     o[1*count + k] = v.upu_qdd_2;
     /* (upu-qdd_3) acceleration of joint 3 */
     o[2*count + k] = upu_rel_in_axes2_x;
@@ -3435,8 +3280,8 @@ INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t a
 
 #define PASSED_IN_joint_accelerations ((size_t)18)
 
-APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, status_flags *t)
+NARROW APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, status_flags *t)
 {
     real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
@@ -3495,7 +3340,8 @@ INLINE void constraints_place_upu(size_t w, size_t i, size_t k, size_t at, size_
 
 #define PASSED_IN_constraints ((size_t)18)
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
+NARROW APART void constraints_run(const prepared *m, const real *X, real *constraints,
+    status_flags *t)
 {
     real s[PASSED_IN_constraints] CLEARED;
     real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
@@ -3541,16 +3387,15 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
-    /* (upu-c) leg force on the platform without actuation and without the mass at the connection
-       point */
+    /* (upu-c) */
     o[0*count + k] = v.upu_c_x;
     o[1*count + k] = v.upu_c_y;
     o[2*count + k] = v.upu_c_z;
-    /* (upu-w_3) force part of reciprocal wrench 3 */
+    /* (upu-w_3) */
     o[3*count + k] = v.axis_x_upu_axes2_x;
     o[4*count + k] = v.axis_x_upu_axes2_y;
     o[5*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    /* (upu-n_c) */
     o[6*count + k] = v.upu_n_c_x;
     o[7*count + k] = v.upu_n_c_y;
     o[8*count + k] = v.upu_n_c_z;
@@ -3605,7 +3450,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
-    /* (potential) potential energy */
+    /* (potential) */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
@@ -3692,7 +3537,7 @@ INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -3703,8 +3548,7 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
+    /* (upu-G) */
     const real upu_pivot_size = magnitude(v.upu_root_1_t);
     const real upu_pivot_size_2 = magnitude(v.upu_q_3_t);
     const real upu_pivot_size_3 = magnitude(v.upu_q_3);
@@ -3755,7 +3599,7 @@ INLINE void condition_place_upu(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real spread_upu = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_upu);
     /* (spread) */
@@ -3766,8 +3610,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 #define PASSED_IN_condition ((size_t)18)
 #define SUMS_OF_condition ((size_t)1)
 
-APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, status_flags *t)
+NARROW APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, status_flags *t)
 {
     real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
     real terms_upu[SUMS_OF_condition*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
@@ -3789,7 +3633,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 /* ---- what users call, as steps over these ---- */
 
-int tripod_3upu_M(const prepared *m, const real *X, real *M_out)
+NARROW int tripod_3upu_M(const prepared *m, const real *X, real *M_out)
 {
     status_flags why;
     start(1, &why);
@@ -3812,7 +3656,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     copy_side_by_side(NV*NV, M, M_out);
 }
 
-int tripod_3upu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
+NARROW int tripod_3upu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     status_flags why;
     start(1, &why);
@@ -3836,7 +3680,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     copy_side_by_side(NV, Z, Z_out);
 }
 
-int tripod_3upu_H(const prepared *m, const real *X, real *H_out)
+NARROW int tripod_3upu_H(const prepared *m, const real *X, real *H_out)
 {
     status_flags why;
     start(1, &why);
@@ -3859,7 +3703,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     copy_side_by_side(NV*NU, H, H_out);
 }
 
-int tripod_3upu_Hk(const prepared *m, const real *X, real *Hk_out)
+NARROW int tripod_3upu_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     status_flags why;
     start(1, &why);
@@ -3882,7 +3726,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
-int tripod_3upu_constraints(const prepared *m, const real *X, real *constraints_out)
+NARROW int tripod_3upu_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     status_flags why;
     start(1, &why);
@@ -3905,7 +3749,7 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     copy_side_by_side(3, constraints, constraints_out);
 }
 
-int tripod_3upu_constraint_bias(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3upu_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
     status_flags why;
@@ -3931,7 +3775,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
-int tripod_3upu_inverse_kinematics(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3upu_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     status_flags why;
     start(1, &why);
@@ -3954,7 +3798,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     copy_side_by_side(NJ, q, q_out);
 }
 
-int tripod_3upu_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3upu_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     status_flags why;
     start(1, &why);
@@ -3979,8 +3823,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     copy_side_by_side(NJ, qd, qd_out);
 }
 
-int tripod_3upu_joint_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3upu_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     status_flags why;
     start(1, &why);
@@ -4006,7 +3850,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     copy_side_by_side(NJ, qdd, qdd_out);
 }
 
-int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+NARROW int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
@@ -4218,8 +4062,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_solve_1[] = {0.25, 0.25, 1.0, 0.25, 0.25, 1.0};
 
-int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out)
+NARROW int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
@@ -4277,8 +4121,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out)
+NARROW int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
     real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
@@ -4351,8 +4195,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     copy_side_by_side(NC, lambda_, lambda_out);
 }
 
-int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed_out)
+NARROW int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
     (void)m;
     (void)X;
@@ -4365,8 +4209,8 @@ int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const re
     return finished(NV, completed, completed_out, &why);
 }
 
-int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out)
+NARROW int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces_out)
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
@@ -4390,8 +4234,8 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
     return finished(NL*(NL + NC), forces, forces_out, &why);
 }
 
-int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out)
+NARROW int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
@@ -4409,7 +4253,8 @@ int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *ki
     return final_status(&why, 1, potential_out);
 }
 
-int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
+NARROW int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4443,8 +4288,8 @@ int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, rea
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
-    *legs_out)
+NARROW int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *sigma_out,
+    real *legs_out)
 {
     const real *length = NULL;
     static const real no_length[1] = {0};
@@ -4479,7 +4324,7 @@ int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *si
     return final_status(&why, NL, legs_out);
 }
 
-int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_out, real
+NARROW int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
@@ -4531,8 +4376,8 @@ int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_o
     return final_status(&why, 1, isotropy_out);
 }
 
-int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out)
+NARROW int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
@@ -4567,7 +4412,7 @@ int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *act
     return final_status(&why, 1, legs_out);
 }
 
-static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+NARROW static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
     real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] CLEARED,
@@ -4588,7 +4433,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     return finished(6, residual, residual_out, &why);
 }
 
-static int slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
@@ -4645,8 +4490,8 @@ static int search_pose_residual(const prepared *m, const real *q_actuated, const
 }
 
 
-int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out)
+NARROW int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, const real
+    *X0, real *X_out)
 {
     real X[NQ] = {0};
     status_flags why;
@@ -4656,7 +4501,7 @@ int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, co
     return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
+NARROW static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
     real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
@@ -4669,7 +4514,7 @@ static int constraint_residual_one(const prepared *m, const real *X, real *resid
     return finished(NC, residual, residual_out, &why);
 }
 
-static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
+NARROW static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     status_flags why;
     start(1, &why);
@@ -4726,7 +4571,7 @@ static int search_constraint_residual(const prepared *m, const real *start, real
 }
 
 
-int tripod_3upu_project(const prepared *m, const real *X, real *projected_out)
+NARROW int tripod_3upu_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     status_flags why;
@@ -4736,7 +4581,7 @@ int tripod_3upu_project(const prepared *m, const real *X, real *projected_out)
     return finished(NQ, projected, projected_out, &why);
 }
 
-int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, real
+NARROW int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, real
     *dissipation_out)
 {
     (void)m;
@@ -4752,7 +4597,8 @@ int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, rea
     return finished(1, dissipation, dissipation_out, &why);
 }
 
-int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
+NARROW int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
@@ -4763,7 +4609,7 @@ int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *
     return finished(NV, momentum, momentum_out, &why);
 }
 
-int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_out)
+NARROW int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] CLEARED, margins[NJ] CLEARED;
@@ -4779,7 +4625,7 @@ int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_ou
     return final_status(&why, NJ, margins_out);
 }
 
-int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out)
+NARROW int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
@@ -4793,7 +4639,7 @@ int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out
     return finished(1, within, within_out, &why);
 }
 
-int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out)
+NARROW int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
@@ -4804,7 +4650,8 @@ int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out
     return finished(NU, q, q_out, &why);
 }
 
-int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
+NARROW int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
@@ -4815,8 +4662,8 @@ int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, 
     return finished(NU, qd, qd_out, &why);
 }
 
-int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out)
+NARROW int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
@@ -4827,8 +4674,8 @@ int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const r
     return finished(NU, qdd, qdd_out, &why);
 }
 
-int tripod_3upu_power(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out)
+NARROW int tripod_3upu_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
@@ -4840,7 +4687,7 @@ int tripod_3upu_power(const prepared *m, const real *X, const real *V, const rea
     return finished(1, power, power_out, &why);
 }
 
-int tripod_3upu_rotation(const real *X, real *R_out)
+NARROW int tripod_3upu_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     status_flags why;
@@ -4851,19 +4698,18 @@ int tripod_3upu_rotation(const real *X, real *R_out)
     return finished(9, R, R_out, &why);
 }
 
-int tripod_3upu_pose(const real *t, const real *R, real *X_out)
+NARROW int tripod_3upu_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
+NARROW int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     status_flags why;
@@ -4876,19 +4722,18 @@ int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
     return finished(NQ, X_dot, X_dot_out, &why);
 }
 
-int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
+NARROW int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
-    const real *const X = join_1;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, X);
     return finished(NQ, X, X_out, &why);
 }
 
-int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
+NARROW int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
@@ -4904,7 +4749,7 @@ int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
     return finished(NQ, X_moved, X_moved_out, &why);
 }
 
-int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
+NARROW int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
@@ -4920,7 +4765,7 @@ int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
     return finished(NV, step, step_out, &why);
 }
 
-int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
+NARROW int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
         {0};
