@@ -78,9 +78,8 @@ def test_hostile_states_break_no_promise(which: str, build: str, tmp_path: Path)
     assert all(line.status[0] == line.values[0] == 0 for line in lines), "single and batch differ"
 
 
-DELIVER = """for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
-            out[size*k + e] = x[e*LANES + k];
+DELIVER = """EVERY_ENTRY(size) {
+        out[size*k + e] = x[e*LANES + k];
 """
 FLAGS = "    status_flags why;\n"
 PLANTED = {
@@ -89,7 +88,7 @@ PLANTED = {
     "a word too many": (
         "quick",
         DELIVER,
-        f"{DELIVER}            out[size*LANES] = 0;\n",
+        f"{DELIVER}        out[size*LANES] = 0;\n",
         "writes beyond its output",
     ),
     "failures are not counted": (
@@ -101,7 +100,7 @@ PLANTED = {
     "an output is not written": (
         "memory",
         DELIVER,
-        DELIVER.replace("e = 0", "e = 1"),
+        DELIVER.replace("out[", "if (e) out["),
         "use-of-uninitialized-value",
     ),
     "a state is kept": (
