@@ -83,8 +83,8 @@ class _Traced:
     def _block(self, block: Block) -> None:
         legs = self.program.leg_counts.get(block.leg_type, 1)
         _assign(block.assignments, self.values)
-        for target, value in block.sums:
-            self.values[target.name] = casadi.sum1(self._of_legs(value, legs))
+        for total in block.sums:
+            self.values[total.target.name] = casadi.sum1(self._of_legs(total.expr, legs))
         for store in block.stores:
             self._store(store, legs)
 
