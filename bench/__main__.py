@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
 from bench import growth, machine
@@ -56,11 +57,11 @@ def run() -> None:
     cases = [Case(name) for name in NAMES]
     pool = ThreadPoolExecutor(1)
     tree = pool.submit(projection_program)  # beside all else that is compiled
-    programs = {c.name: timed(f"compile {c.name}", lambda c=c: programs_of(c)) for c in cases}
+    programs = {c.name: timed(f"compile {c.name}", partial(programs_of, c)) for c in cases}
     rows = []
     for case in cases:
         programs[case.name] += projection(case, tree.result())
-        rows += timed(f"measure {case.name}", lambda c=case: measure(programs[c.name]))
+        rows += timed(f"measure {case.name}", partial(measure, programs[case.name]))
     results = {
         "machine": machine.description(),
         "peak": timed("rate of the core", peak),

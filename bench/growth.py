@@ -15,7 +15,7 @@ from bench.c_programs import our_program
 from bench.cases import Array, Case
 from bench.programs import measure
 from pne_sym import manipulators
-from pne_sym.model.manipulator import Leg, Manipulator
+from pne_sym.model.manipulator import Leg, Manipulator, Vector3
 from pne_sym.model.reader import checked
 
 LEGS = {"planar_3rpr": ((3, 6, 12, 24, 60), 1), "stewart": ((6, 12, 24, 60), 2)}
@@ -49,10 +49,15 @@ def _turned(leg: Leg, angle: float, centre: Array) -> Leg:
     base_frame = turn @ np.array(leg.base_frame)
     return replace(
         leg,
-        base_point=tuple(map(float, base_point)),
-        base_frame=tuple(tuple(map(float, row)) for row in base_frame),
-        platform_point=tuple(map(float, turn @ np.array(leg.platform_point))),
+        base_point=_vector(base_point),
+        base_frame=(_vector(base_frame[0]), _vector(base_frame[1]), _vector(base_frame[2])),
+        platform_point=_vector(turn @ np.array(leg.platform_point)),
     )
+
+
+def _vector(entries: Array) -> Vector3:
+    x, y, z = map(float, entries)
+    return x, y, z
 
 
 def over_legs() -> dict[str, list[list[float]]]:

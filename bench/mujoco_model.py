@@ -84,12 +84,13 @@ class _Closed:
         task = 6 if self.spatial else 3
         self.actuated = task + np.array(m.ACTUATED)
         pose, V, A = (np.array(a) for a in (s.X, s.V, s.A))
-        self.turn = m.rotation(s.X) if self.spatial else None
+        self.turn: Array | None = None
         if self.spatial:  # angular velocities of a floating body are in its axes
+            self.turn = turn = m.rotation(s.X)
             pose = pose[:, [0, 1, 2, 6, 3, 4, 5]]
             pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1, keepdims=True)
             for a in (V, A):
-                a[:, 3:] = np.einsum("nji,nj->ni", self.turn, a[:, 3:])
+                a[:, 3:] = np.einsum("nji,nj->ni", turn, a[:, 3:])
         self.qpos = np.hstack([pose, m.inverse_kinematics(s.X)])
         self.qvel = np.hstack([V, m.joint_rates(s.X, s.V)])
         self.qacc = np.hstack([A, m.joint_accelerations(s.X, s.V, s.A)])

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import ArrayLike
 
 from bench.cases import BUILD, Array, Case, States
 from bench.programs import C_SOURCES, Program, compiled
@@ -102,7 +103,8 @@ class Tree:
 
     def numbers(self, s: States) -> Array:
         """All that pinocchio.cpp reads."""
-        manipulator, parts = self.case.manipulator, []
+        manipulator = self.case.manipulator
+        parts: list[ArrayLike] = []
         parts += [[self.task], manipulator.gravity, [len(self.joints)]]
         parts += [joint.numbers() for joint in self.joints]
         parts.append([len(self.ends)])

@@ -26,7 +26,7 @@ Curve = Sequence[Sequence[float]]
 
 
 def _plot(path: Path, xlabel: str, curves: Mapping[str, Curve], ticks: Sequence[int]) -> None:
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(dict[Any, Any](STYLE)):
         figure, axes = plt.subplots(figsize=(9, 4.5), layout="constrained")
         for mark, (label, points) in zip("osv^Dx+*", curves.items(), strict=False):
             x, y = zip(*points, strict=True)
