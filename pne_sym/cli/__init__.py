@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import atexit
 import gc
-import os
 import sys
 from collections.abc import Sequence
 
@@ -30,10 +29,6 @@ def main(argv: Sequence[str] | None = None) -> None:
 
         prepare_streams()
         app(arrange(arguments), prog_name="pne-gen")
-    except SystemExit as leaving:
-        if argv is None and isinstance(leaving.code, int):
-            _codes.append(leaving.code)
-        raise
     except KeyboardInterrupt:
         sys.stderr.write("pne-gen: interrupted\n")
         sys.exit(130)
@@ -45,23 +40,9 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def keep_what_is_made() -> None:
-    """Look for cyclic garbage only every million objects, and take nothing apart at the end.
+    """Look for cyclic garbage only every million objects, and no more at the end.
 
     What a run makes lives until its end: the collector would go through it again and again.
     """
     gc.set_threshold(1_000_000)
-    atexit.register(_end)  # before what is imported later registers: the last to be called
-
-
-_codes: list[int] = []  # with which the process is to end
-
-
-def _end() -> None:
-    """End the process; where output is left that cannot be written, that is Python's to tell."""
-    if _codes:
-        try:
-            sys.stdout.flush()
-            sys.stderr.flush()
-        except OSError:
-            return
-        os._exit(_codes[-1])
+    atexit.register(gc.freeze)
