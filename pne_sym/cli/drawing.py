@@ -70,10 +70,10 @@ def draw(  # noqa: PLR0913, PLR0917 - an option each
     quiet: bool,
     debug: bool,
 ) -> None:
-    """Draw a manipulator: a picture at a pose, or an animation of a path.
+    """Draw a manipulator at a pose, or on a path.
 
-    Base, joints by their kinds, links, platform and frames, from its own data; actuated
-    joints stand out. Needs matplotlib: pip install 'pne-sym[draw]'.
+    A picture, or an animation: base, joints by their kinds, links, platform and frames, from its
+    own data; actuated joints stand out. Needs matplotlib: pip install 'pne-sym[draw]'.
     """
     with told(debug=debug):
         from pne_sym import drawing

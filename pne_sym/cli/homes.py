@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 @source_argument
 @debug_flag
 def home(source: str, debug: bool) -> None:
-    """List the closures of all legs at home, and the assembly branch that home selects.
+    """List all closures of the legs at home.
 
-    A line of numbers is q of a leg at the pose home.X, as the specification may state it;
-    that of home is marked. What a specification without home.q gets stands first.
+    The assembly branch that home selects is told too. A line of numbers is q of a leg at the
+    pose home.X, as the specification may state it; that of home is marked. What a specification
+    without home.q gets stands first.
     """
     with told(debug=debug):
         from pne_sym.generation import find
