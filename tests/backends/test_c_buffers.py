@@ -70,3 +70,10 @@ def test_what_passes_between_the_parts(name: str) -> None:
             assert written == rows(name, size), function
             found += 1
     assert found > 5
+
+
+def test_entries_that_nobody_writes_are_cleared() -> None:
+    """Actuators of planar_redundant have no part in some rows of H; those of planar_3rpr in all."""
+    runs = ("dynamics_run", "dynamics_run_lanes", "H_run", "H_run_lanes")
+    cleared = {n: ["clear(H, " in routines(n)[function] for function in runs] for n in NAMES}
+    assert cleared == {"planar_3rpr": [False] * 4, "planar_redundant": [True] * 4}
