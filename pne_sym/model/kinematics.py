@@ -135,6 +135,15 @@ def skew(a: Array) -> Array:
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
+_LEVI_CIVITA = np.cross(np.eye(3)[:, None], np.eye(3)[None]).transpose(2, 0, 1)
+
+
+def cross(a: Array, b: Array) -> Array:
+    """a x b of vectors (..., 3); `np.cross` takes five times as long for a few."""
+    result: Array = np.einsum("ijk,...j,...k->...i", _LEVI_CIVITA, a, b)
+    return result
+
+
 @dataclass(frozen=True)
 class ChainPose:
     """A leg's chain of joints at given displacements, from where it begins.
@@ -175,7 +184,7 @@ class ChainPose:
         for joint, axis, origin in zip(self.joints, self.axes, self.origins, strict=True):
             column = joint.advance * axis
             if joint.turns:
-                column = column + joint.turn * np.cross(axis, self.tip - origin)
+                column = column + joint.turn * cross(axis, self.tip - origin)
             columns.append(column)
         return np.moveaxis(np.array(columns), 0, -1)
 

@@ -141,7 +141,7 @@ def test_survivors_late_finds_and_wrong_rows(tmp_path: Path) -> None:
 
 def test_a_mutant_that_runs_on_and_on_is_ended() -> None:
     endless = replaced(after='__import__("time").sleep(1e6)')
-    outcome = try_fault(endless, 15.0)
+    outcome = try_fault(endless, 4.0)
     assert outcome.verdict is Verdict.TIMEOUT
     assert not outcome.verdict.is_good
 
