@@ -109,9 +109,8 @@ class Parts:
             lines: that stand before it.
             first: places in s and in sums from which these are counted.
         """
-        passed, sums = self.passed[first[0] :], self.sums[first[1] :]
-        loads = {n: f"s[{at}*w + k]" for at, n in enumerate(passed)}
-        loads |= {n: f"sums[{at}*w + k]" for at, n in enumerate(sums)}
+        loads = self.passed_at("k", first[0])
+        loads |= {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums[first[1] :])}
         shared = Shared(places=self.prepared(self.f.shared), known=self.known)
         body = [*lines]
         for block in blocks:
@@ -132,9 +131,9 @@ class Parts:
         ]
         return Routine.of(f"{self.name}_{part}", parameters, lines)
 
-    def passed_at(self, index: str) -> dict[str, str]:
-        """What was made before the legs, for the state with this index."""
-        return {n: f"s[{at}*w + {index}]" for at, n in enumerate(self.passed)}
+    def passed_at(self, index: str, first: int = 0) -> dict[str, str]:
+        """What was made before the legs, for the state with this index, from the first place on."""
+        return {n: f"s[{at}*w + {index}]" for at, n in enumerate(self.passed[first:])}
 
     def prepared(self, names: Iterable[str], index: str = "") -> dict[str, str]:
         """The prepared values; names made by the function itself are its own."""
