@@ -199,6 +199,7 @@ $(BIN)/python:
 
 $(VENV)/core.stamp: pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m compileall -q pne_sym  # as pip does with what it copies
 	touch $@
 
 $(VENV)/test.stamp: $(VENV)/core.stamp

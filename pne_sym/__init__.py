@@ -25,6 +25,8 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
+__version__ = "0.1.0"
+
 # How many results SymPy keeps per function, which it reads when it is imported.  Its own thousand
 # are fewer than one derivation makes: with these a dense one takes half the time.
 os.environ.setdefault("SYMPY_CACHE_SIZE", "200000")

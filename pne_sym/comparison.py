@@ -6,8 +6,8 @@ import difflib
 import enum
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from pne_sym.contents import MODEL_NAME, Contents, check_names, folders_of, read_file
 from pne_sym.writer import readable_errors
@@ -21,8 +21,7 @@ class DifferenceKind(enum.StrEnum):
     CHANGED = "changed"
 
 
-@dataclass(frozen=True)
-class Difference:
+class Difference(NamedTuple):
     """One file that is not what would be generated.
 
     Attributes:

@@ -17,9 +17,8 @@ import signal
 import traceback
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from pne_sym import comparison, writer
 from pne_sym.backends import registry
@@ -39,8 +38,7 @@ class InputError(ValueError):
     """What was asked for cannot be done; the message is one line for people."""
 
 
-@dataclass(frozen=True)
-class Compiled:
+class Compiled(NamedTuple):
     """A manipulator and what is generated for it.
 
     Attributes:
@@ -219,8 +217,7 @@ def _workers() -> BaseContext:
     return context
 
 
-@dataclass(frozen=True)
-class _Outcome:
+class _Outcome(NamedTuple):
     """What a worker process found, in a form that any error survives."""
 
     compiled: Compiled | None = None

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,8 +68,7 @@ def check_home(bundle: Bundle) -> None:
         warnings.warn(f"{bundle.name}: {message}", SpecWarning, stacklevel=2)
 
 
-@dataclass(frozen=True)
-class _Fault:
+class _Fault(NamedTuple):
     """A function that is not finite at some states, and the first reason."""
 
     function: str

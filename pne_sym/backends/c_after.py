@@ -7,8 +7,9 @@ place on, so that its text is the same wherever that stands.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
+from typing import NamedTuple
 
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import Parts
@@ -17,8 +18,7 @@ from pne_sym.program.ir import Block
 from pne_sym.program.slices import read_in, symbols
 
 
-@dataclass(frozen=True)
-class AfterPiece:
+class AfterPiece(NamedTuple):
     """Statements with what they give.
 
     Attributes:

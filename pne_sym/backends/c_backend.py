@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_functions import LANES, FunctionText, FunctionWriter
@@ -36,8 +36,7 @@ _SUPPORT = ("linear", "rectangular", "operations", "bounds", "rotations", "itera
 """Templates of plain C, of which a module gets what it needs."""
 
 
-@dataclass(frozen=True)
-class CClosure:
+class CClosure(NamedTuple):
     """Legs of a type whose displacements are found by iteration.
 
     Attributes:
@@ -51,8 +50,7 @@ class CClosure:
     call: str
 
 
-@dataclass(frozen=True)
-class CView:
+class CView(NamedTuple):
     """Ready strings and numbers for the templates.
 
     Attributes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_after import After
@@ -27,8 +27,7 @@ from pne_sym.program.ir import Block, Function
 LANES = 8
 
 
-@dataclass(frozen=True)
-class FunctionText:
+class FunctionText(NamedTuple):
     """A function of the program in C.
 
     Attributes:

@@ -7,15 +7,14 @@ while the roots and divisions of the legs wait behind it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pne_sym.backends.c_stages import Stage, Stages
 from pne_sym.program.ir import Assignment
 from pne_sym.program.slices import Slices, read_by, read_in
 
 
-@dataclass(frozen=True)
-class Half:
+class Half(NamedTuple):
     """A part of what precedes the legs.
 
     Attributes:

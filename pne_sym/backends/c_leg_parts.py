@@ -7,8 +7,9 @@ dynamics gathers.  Places count from a piece's own first one, so that its text i
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
+from typing import NamedTuple
 
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import STATUSES, Parts
@@ -33,8 +34,7 @@ Rows = list[tuple[str, list[str]]]
 """Lines with the equations that they are for."""
 
 
-@dataclass(frozen=True)
-class Piece:
+class Piece(NamedTuple):
     """Lines of a part, and the routine that they would be.
 
     Attributes:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import replace
 
 from pne_sym.backends.c_text import Routine
 
@@ -25,7 +24,7 @@ class Once:
             if count[_key(r)] > 1 and _key(r) not in self.shared:
                 issued[name] += 1
                 number = f"_{issued[name]}" if issued[name] > 1 else ""
-                self.shared[_key(r)] = replace(r, name=f"{name}{number}")
+                self.shared[_key(r)] = r._replace(name=f"{name}{number}")
 
     def of(self, routine: Routine) -> Routine:
         """What is called: the shared routine, or the routine itself."""

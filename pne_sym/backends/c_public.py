@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_operations import WITHOUT, c_order, runs_in_lanes
@@ -28,8 +28,7 @@ _ALSO = {
 """What C says of its own: names of outputs, tolerances."""
 
 
-@dataclass(frozen=True)
-class CArray:
+class CArray(NamedTuple):
     """An input or output array of a function.
 
     Attributes:
@@ -55,8 +54,7 @@ class CArray:
         return f"{self.name} ({self.shape}{null}{positive})"
 
 
-@dataclass(frozen=True)
-class CFunction:
+class CFunction(NamedTuple):
     """A function that C users call; there is one for a state and one for a batch.
 
     Attributes:

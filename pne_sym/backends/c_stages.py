@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from pne_sym.backends.c_text import PRINTER, c_name
 from pne_sym.backends.waiting import WaitingPrinter, ready, ready_after
@@ -22,8 +22,7 @@ _MANY = 3  # functions that need not want all of a stage
 _FEW = 4  # statements of two functions that are not worth a stage
 
 
-@dataclass(frozen=True)
-class Statement:
+class Statement(NamedTuple):
     """An assignment with what it is made of: equal ones compute the same in all functions.
 
     Attributes:

@@ -7,7 +7,6 @@ expression of entries, a part of an operand, or a function of templates/c.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_arrays import Arrays
@@ -91,7 +90,7 @@ class Steps:
             return self._called_by_users(body)
         kind = one_state(self.bundle, "static")
         one = Routine.of(f"{self.f.name}_one", self._parameters(self.f.inputs), body, kind)
-        return replace(one, result="int")
+        return one._replace(result="int")
 
     def _begun(self) -> list[str]:
         """A call of another function, with whose steps this one begins."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -136,8 +135,7 @@ def words_of(lines: Iterable[str]) -> set[str]:
     return set(re.findall(r"\w+", code))
 
 
-@dataclass(frozen=True)
-class Routine:
+class Routine(NamedTuple):
     """A static function of the generated file; only the parameters that it reads are kept.
 
     Attributes:

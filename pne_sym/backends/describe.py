@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation import Coordinates, Derivation, ParameterField, Rule
 from pne_sym.model.manipulator import Manipulator
 
 
-@dataclass(frozen=True)
-class FieldView:
+class FieldView(NamedTuple):
     """One parameter, ready to print.
 
     Attributes:
@@ -47,8 +46,7 @@ class FieldView:
         return f"shape {self.shape}" if self.shape else "a number"
 
 
-@dataclass(frozen=True)
-class Described:
+class Described(NamedTuple):
     """Facts about a model that generated files state.
 
     Attributes:

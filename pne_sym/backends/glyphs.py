@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 _GROUP = re.compile(r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}")
 _TOKEN = re.compile(r"\\[A-Za-z]+\s?|\\.|[^\\{}]")
@@ -16,8 +16,7 @@ _FRACTION = re.compile(rf"\\frac({_GROUP.pattern})({_GROUP.pattern})")
 _SCRIPT = re.compile(rf"[_^]({_GROUP.pattern}|\\[A-Za-z]+|.)")
 
 
-@dataclass(frozen=True)
-class Glyph:
+class Glyph(NamedTuple):
     r"""A symbol with its scripts, such as \mathbf h with subscript 2.
 
     >>> str(Glyph.of(r"\mathbf h_{2}").tilde().indexed("i"))
@@ -47,17 +46,17 @@ class Glyph:
 
     def tilde(self) -> Glyph:
         """With the tilde of a cross-product tensor."""
-        return replace(self, base=rf"\tilde{{{self.base}}}")
+        return self._replace(base=rf"\tilde{{{self.base}}}")
 
     def indexed(self, index: str) -> Glyph:
         """With one more index."""
-        return replace(self, sub=f"{self.sub},{index}" if self.sub else index)
+        return self._replace(sub=f"{self.sub},{index}" if self.sub else index)
 
     def raised(self, exponent: str) -> str:
         """To a power, in brackets where a superscript stands already."""
         if self.sup:
             return f"({self})^{braced(exponent)}"
-        return str(replace(self, sup=exponent))
+        return str(self._replace(sup=exponent))
 
     def __str__(self) -> str:
         text = self.base

@@ -6,9 +6,9 @@ import hashlib
 import json
 import re
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
 
+from pne_sym import __version__
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_public import CFunction, c_functions
 from pne_sym.backends.registry import default
@@ -35,7 +35,7 @@ def _manifest(bundle: Bundle) -> dict[str, Any]:
     c = bundle.coordinates
     return {
         "format": FORMAT,
-        "generator": f"pne_sym {version('pne-sym')}",
+        "generator": f"pne_sym {__version__}",
         **({"targets": bundle.targets} if bundle.targets != default() else {}),
         "name": bundle.name,
         "title": bundle.manipulator.title,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import re
-import symtable
 import textwrap
 from collections.abc import Iterable
 from functools import cache, lru_cache
@@ -17,6 +16,7 @@ _SUPPORT = (
     *("modes", "recording", "replay"),
     *("operations", "linear", "bounds", "iteration", "rotations"),
 )
+_NAME = re.compile(r"(?<![\w.])_\w+")
 _SPELLINGS = {
     r" *(?:xp = self\.xp|a = self\.require_rotation\(a\))\n": "",  # arguments are looked at before
     r"_constant\(xp, ((?:[^()]|\((?:[^()]|\([^()]*\))*\))*)\)": r"\1",
@@ -101,10 +101,5 @@ def _made(node: ast.stmt) -> list[str]:
 
 @lru_cache(1 << 12)  # most are of the support, which all models have
 def _named(text: str) -> frozenset[str]:
-    """Names that occur in source, those of attributes apart."""
-    tables, found = [symtable.symtable(text, "", "exec")], set[str]()
-    while tables:
-        table = tables.pop()
-        found.update(table.get_identifiers())
-        tables += table.get_children()
-    return frozenset(found)
+    """Names in source that begin as those of the support do, attributes apart."""
+    return frozenset(_NAME.findall(text))

@@ -8,7 +8,7 @@ specification; what they do not suit is noticed by the pivots, and is solved wit
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,7 @@ _CLEARLY = 2  # a row further down is better by this factor, as where rows are c
 _FOURS = 16  # no more powers of 4 between rows and one: products of entries stay far from underflow
 
 
-@dataclass(frozen=True)
-class Order:
+class Order(NamedTuple):
     """How a system is eliminated.
 
     Attributes:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.printing.precedence import PRECEDENCE, precedence
@@ -13,8 +12,7 @@ from sympy.printing.str import StrPrinter
 Terms = tuple[tuple[bool, Any], ...]
 
 
-@dataclass(frozen=True)
-class Dialect:
+class Dialect(NamedTuple):
     """How a language writes what is not + - * /.
 
     Attributes:

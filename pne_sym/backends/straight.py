@@ -6,8 +6,7 @@ Values of legs are arrays with the legs as a dimension of their own: nothing run
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -25,8 +24,7 @@ def places(numbers: Iterable[int], first: int = 0) -> str:
     return f"[{', '.join(str(n + first) for n in numbers)}]"
 
 
-@dataclass(frozen=True)
-class Forms:
+class Forms(NamedTuple):
     """How a language writes statements, with the parts in braces.
 
     Attributes:

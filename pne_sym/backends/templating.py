@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import Any
 
@@ -54,11 +57,24 @@ def template_folder() -> Path:
     raise FileNotFoundError("the templates of pne_sym are not installed")
 
 
+def _compiled() -> jinja2.BytecodeCache | None:
+    """Where compiled templates are kept: as Python keeps those of modules beside them."""
+    folder = Path(cache_from_source(str(template_folder() / "template"))).parent
+    if sys.dont_write_bytecode:
+        return None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return jinja2.FileSystemBytecodeCache(str(folder)) if os.access(folder, os.W_OK) else None
+
+
 @cache
 def environment() -> jinja2.Environment:
     """Strict about undefined names; no autoescape, as no output is HTML."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template_folder()),
+        bytecode_cache=_compiled(),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

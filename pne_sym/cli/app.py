@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from pne_sym import comparison, writer
+from pne_sym import __version__, comparison, writer
 from pne_sym.backends import registry
 from pne_sym.cli import drawing, homes, listing, review, starter
 from pne_sym.cli.arguments import COMMANDS, GENERATE
@@ -75,10 +75,8 @@ class _Program(click.Group):
 
 def _version(context: click.Context, _option: click.Parameter, wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
-
         with told(debug=False):
-            Report().line(f"pne-gen {version('pne-sym')}")
+            Report().line(f"pne-gen {__version__}")
         context.exit()
 
 

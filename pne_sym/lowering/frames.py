@@ -7,8 +7,7 @@ steps are multiplied once, among the parameters.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
 
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
     from pne_sym.lowering.components import Lowering
 
 
-@dataclass(frozen=True)
-class TurnStep:
+class TurnStep(NamedTuple):
     """Turn about z: v_to = (c x + sign s y, c y - sign s x, z).
 
     Cosine and sine are looked up only when a component needs them: what lies along

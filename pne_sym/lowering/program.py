@@ -147,25 +147,25 @@ def _cheapest_stores(
     cheap = [o for o in outputs if o.array in first]
     others = [o for o in outputs if o.array not in first]
 
-    def run(*, columns: bool) -> tuple[int, tuple[_Stored, Lowering]]:
-        builder.keep_nothing()
-        lowering = Lowering(derivation, builder, cheap)
-        if columns:
-            lowering.form_tip_axes()
-        made = {output: stores(lowering, output) for output in (*cheap, *others)}
-        builder.keep_nothing()
-        cost = builder.cost([s.value for output in cheap for s in made[output]])
-        return cost, (made, lowering)
-
     mark = builder.mark()
-    step_cost, by_steps = run(columns=False)
+    by_columns = Lowering(derivation, builder, cheap)
+    builder.keep_nothing()
+    by_columns.form_tip_axes()
+    of_columns = {output: stores(by_columns, output) for output in (*cheap, *others)}
+    most = builder.cost_of_all([s.value for output in cheap for s in of_columns[output]])
+
     forgotten = builder.rollback(mark)
-    column_cost, by_columns = run(columns=True)
-    if column_cost < step_cost:
-        return by_columns
-    builder.rollback(mark)
-    builder.redo(forgotten)
-    return by_steps
+    by_steps = Lowering(derivation, builder, cheap)
+    builder.keep_nothing()
+    of_steps: _Stored = {}
+    for output in cheap:
+        of_steps[output] = stores(by_steps, output)
+        values = [s.value for found in of_steps.values() for s in found]
+        if builder.cost_of_all(values) > most:  # more outputs would only add to it
+            builder.rollback(mark)
+            builder.redo(forgotten)
+            return of_columns, by_columns
+    return of_steps | {output: stores(by_steps, output) for output in others}, by_steps
 
 
 def _settle_signs(builder: Builder, meaning: Meaning, slices: list[Slice]) -> None:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -51,8 +50,7 @@ def settle(
 _LEGS = 3  # for how many a statement of legs counts, so that one leg more changes no sign
 
 
-@dataclass(frozen=True)
-class _Term:
+class _Term(NamedTuple):
     """What the sign of a term depends on.
 
     Attributes:

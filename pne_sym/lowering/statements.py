@@ -6,7 +6,7 @@ All of it since a mark can be forgotten, and what was forgotten made again.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 
@@ -110,8 +110,7 @@ class _Value:
         self.total: Any = None
 
 
-@dataclass(frozen=True)
-class Undone:
+class Undone(NamedTuple):
     """What a rollback has forgotten.
 
     Attributes:
@@ -313,8 +312,15 @@ class Statements:
 
     def cost(self, atoms: Iterable[Atom]) -> int:
         """Run-time operations needed for the atoms beyond what is live already."""
+        return self._cost(self._reach(atoms))
+
+    def cost_of_all(self, atoms: Iterable[Atom]) -> int:
+        """Run-time operations needed for the atoms, whatever is live."""
+        return self._cost(self._reach(atoms, frozenset()))
+
+    def _cost(self, reached: Iterable[_Known]) -> int:
         found = 0
-        for known in self._reach(atoms):
+        for known in reached:
             if known.weight is None and known.made:
                 known.weight = self._operations(known.made)
             found += known.weight or 0

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.statements import Atom, Undone
@@ -17,8 +16,7 @@ class NotYetError(Exception):
     """A value is asked for while it is being made: this way around does not lead there."""
 
 
-@dataclass(frozen=True)
-class Trial:
+class Trial(NamedTuple):
     """A value made on trial.
 
     Attributes:

@@ -13,7 +13,8 @@ constraints, or does not close, and is left out.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,8 +40,7 @@ _ATTEMPTS = 4
 """Steps are halved so often until the loops close."""
 
 
-@dataclass(frozen=True)
-class _Ranks:
+class _Ranks(NamedTuple):
     """Of one geometry at one pose; see `Actuation`."""
 
     rank: int

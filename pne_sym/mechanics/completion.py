@@ -12,10 +12,9 @@ platform cannot turn, a force through the fixed centre.  They constrain nothing.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import combinations, product
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -50,8 +49,7 @@ class Kind(StrEnum):
     """About the fixed centre, about a coordinate direction of the last link."""
 
 
-@dataclass(frozen=True)
-class Auxiliary:
+class Auxiliary(NamedTuple):
     """A direction that completes the degrees of freedom of a leg type.
 
     Attributes:
@@ -66,8 +64,7 @@ class Auxiliary:
     acts: bool = True
 
 
-@dataclass(frozen=True)
-class _State:
+class _State(NamedTuple):
     """A leg and its platform in numbers.
 
     Attributes:
@@ -124,7 +121,7 @@ def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxili
     wanted = ((*first, *second) for first, second in choices)
     chosen = best_conditioned(wanted, lambda choice: (_columns(s, choice) for s in home))
     return tuple(
-        replace(a, of_force=_has_force(home, chosen, k), acts=k < missing - idle)
+        a._replace(of_force=_has_force(home, chosen, k), acts=k < missing - idle)
         for k, a in enumerate(chosen)
     )
 

@@ -8,8 +8,7 @@ joint itself and of those before it are the entries of the leg's inertia matrix.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -46,8 +45,7 @@ L_c_#_%   | \boldsymbol\Lambda_{#,%} | EULER
 """)
 
 
-@dataclass(frozen=True)
-class _Body:
+class _Body(NamedTuple):
     """Mass, first moment and inertia tensor about the origin of a group."""
 
     mass: Any

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from pne_sym.derivation import Book, Coordinates, Derivation, NameTakenError
 from pne_sym.mechanics.actuation import actuation, check_dependence
 from pne_sym.mechanics.conditioning import write_lengths
@@ -47,7 +45,7 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     platform = introduce_platform(book, manipulator, space)
     if manipulator.moving_base:
         base = introduce_base(book, platform.gravity, planar=space.planar)
-        platform = replace(platform, base=base, gravity=base.felt)
+        platform = platform._replace(base=base, gravity=base.felt)
     types = leg_types(manipulator)
     legs = []
     for leg_type in types:

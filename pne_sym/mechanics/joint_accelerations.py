@@ -6,7 +6,7 @@ Reference: sections 2.2, 2.3 and 2.5.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from pne_sym.derivation import Book
 from pne_sym.mechanics.leg_rates import LegRates
@@ -86,8 +86,7 @@ class JointAccelerations(LegRates):
         return self.collection.known
 
 
-@dataclass(frozen=True)
-class _Bias:
+class _Bias(NamedTuple):
     """Accelerations at zero joint accelerations.
 
     Attributes:

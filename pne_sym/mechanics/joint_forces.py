@@ -8,8 +8,8 @@ Friction in the platform joint is a moment on the last link, and the opposite on
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -44,8 +44,7 @@ per_turn_#   | n^{-1}_{#}               | LUMPING constant
 """)
 
 
-@dataclass(frozen=True)
-class Motor:
+class Motor(NamedTuple):
     """The motor of a joint.
 
     Attributes:
@@ -61,8 +60,7 @@ class Motor:
     rate: Any = None
 
 
-@dataclass(frozen=True)
-class InJoint:
+class InJoint(NamedTuple):
     """What acts in one joint; zeros where it has no such thing.
 
     Attributes:
@@ -171,13 +169,13 @@ class _Writer:
         at, found = Place.joint(self.g.leg_type, j), InJoint()
         if joint.friction:
             force = self.eq("friction_#", self._law(at, rate**2) * rate, j)
-            found = replace(found, friction=force)
+            found = found._replace(friction=force)
         if joint.spring:
             force, stored = self._spring(at, j, q[j])
-            found = replace(found, spring=force, stored=stored)
+            found = found._replace(spring=force, stored=stored)
         if joint.actuator:
             motor = self._motor(at, j, rate)
-            found = replace(found, rotor=sp.S.Zero if self.coupled else motor.felt, motor=motor)
+            found = found._replace(rotor=sp.S.Zero if self.coupled else motor.felt, motor=motor)
         return found
 
     def given(self, at: Place, name: str) -> Any:

@@ -161,7 +161,7 @@ def _inverse_kinematics(
         inverse = given_displacements(book, g, inverse.reasons)
     elif inverse.swings:
         book.retext(_SWINGING)
-    inverse = replace(inverse, S=S)
+    inverse = inverse._replace(S=S)
     signs = branch_signs(manipulator, g, inverse, book)
     for branch, of_legs in zip(inverse.branches, signs, strict=True):
         book.parameters.add_branch(branch.symbol.name, g.leg_type.name, of_legs)

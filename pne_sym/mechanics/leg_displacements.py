@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
 from pne_sym.vector import Vector, ZeroVector
 
 
-@dataclass(frozen=True)
-class Branch:
+class Branch(NamedTuple):
     """A root whose sign is that of home.
 
     Attributes:
@@ -29,8 +27,7 @@ class Branch:
     power: int
 
 
-@dataclass(frozen=True)
-class Resolved:
+class Resolved(NamedTuple):
     """The vector to the connection point in the canonical axes that a joint opens.
 
     Attributes:
@@ -46,8 +43,7 @@ class Resolved:
         return sp.Add(*(d * part for d, part in zip(direction, self.parts, strict=True)))
 
 
-@dataclass(frozen=True)
-class InverseKinematics:
+class InverseKinematics(NamedTuple):
     """How each joint of a leg is found.
 
     Attributes:

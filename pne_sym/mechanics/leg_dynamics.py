@@ -12,8 +12,7 @@ Reference: sections 2.2, 2.3 and 2.5, Eqs. 1 to 4.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -90,8 +89,7 @@ _MOMENTS = (
 )
 
 
-@dataclass(frozen=True)
-class LegDynamics:
+class LegDynamics(NamedTuple):
     """What the platform needs of a leg.
 
     Attributes:

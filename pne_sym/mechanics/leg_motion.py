@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_accelerations import JointAccelerations, write_joint_accelerations
@@ -53,8 +53,7 @@ _TENSOR = (
 )
 
 
-@dataclass(frozen=True)
-class GroupMotion:
+class GroupMotion(NamedTuple):
     """How the links that turn together accelerate.
 
     Attributes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any, Unpack
 
 import numpy as np
@@ -27,7 +26,7 @@ q             | \mathbf p       | given @platform
 d_#           | \mathbf d_{#}   | given
     offset of &, fixed in link %
 """)
-_OFFSET_END = replace(END, word="platform joint")
+_OFFSET_END = END._replace(word="platform joint")
 
 
 class LegParameters:

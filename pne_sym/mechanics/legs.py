@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
@@ -12,8 +11,7 @@ from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.vector import ZeroTensor, ZeroVector, sum_over_legs
 
 
-@dataclass(frozen=True)
-class Leg:
+class Leg(NamedTuple):
     """Everything written about one leg type."""
 
     g: LegGeometry

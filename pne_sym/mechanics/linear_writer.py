@@ -9,9 +9,9 @@ coordinates) put to zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from pne_sym.derivation import Book, Law
 from pne_sym.mechanics.leg_geometry import LegGeometry
@@ -19,8 +19,7 @@ from pne_sym.mechanics.terms import Term, Writer, filled, is_named
 from pne_sym.vector import LinearForm, linear_form
 
 
-@dataclass(frozen=True)
-class Collection:
+class Collection(NamedTuple):
     """What is written as coefficient times acceleration plus remainder.
 
     Attributes:

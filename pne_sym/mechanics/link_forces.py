@@ -6,8 +6,7 @@ Reference: section 2.5, steps 1.2 and 1.3, Eqs. 1 and 2.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -47,8 +46,7 @@ h_group_# | \mathbf h^\Sigma_{#}  | LUMPING constant @link
 """)
 
 
-@dataclass(frozen=True)
-class LinkForces:
+class LinkForces(NamedTuple):
     """What accelerating and holding up the links takes, by joint number.
 
     Attributes:

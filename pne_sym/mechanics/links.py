@@ -6,9 +6,8 @@ acceleration the platform gives.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from pne_sym.derivation import Book, Rule
 from pne_sym.mechanics.leg_geometry import LegGeometry
@@ -31,8 +30,7 @@ J_#       | \mathbf J_{#}        | LUMPING constant symmetric @own
 """)
 
 
-@dataclass(frozen=True)
-class LinkBody:
+class LinkBody(NamedTuple):
     """A link with inertia.
 
     Attributes:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, TypedDict, Unpack
+from typing import Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
 import sympy as sp
@@ -69,8 +68,7 @@ class Demands(TypedDict, total=False):
     rule: Rule
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """A part of a leg that has parameters.
 
     Attributes:

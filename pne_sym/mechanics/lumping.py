@@ -6,8 +6,7 @@ Reference: section 2.4.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -38,8 +37,7 @@ _KEPT = (
 _CARRIES = " The payload moves with the platform and is counted with it."
 
 
-@dataclass(frozen=True)
-class PlatformInertia:
+class PlatformInertia(NamedTuple):
     """Of the platform and all that is counted with it.
 
     Attributes:

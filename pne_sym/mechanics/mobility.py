@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,8 +32,7 @@ CASES: dict[str, str] = {
 """The cases of section 3 of the paper, by number."""
 
 
-@dataclass(frozen=True)
-class Mobility:
+class Mobility(NamedTuple):
     """What moves, and what moves it, at home.
 
     Attributes:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from pne_sym.derivation import Derivation, Quantity, Role, full_name, full_names, names_in
 from pne_sym.model.entry import nearest
@@ -36,8 +36,7 @@ TAKEN = (
 _DERIVATIVES = {Role.RATE: "dot", Role.JOINT_ACCELERATION: "ddot"}
 
 
-@dataclass(frozen=True)
-class Mark:
+class Mark(NamedTuple):
     r"""An author's symbol as LaTeX.
 
     >>> Mark("r", "u", bold=True).latex()
@@ -66,8 +65,7 @@ class Mark:
         return text + (rf"_{{\mathrm{{{self.sub}}}}}" if word else f"_{{{self.sub}}}")
 
 
-@dataclass(frozen=True)
-class Symbol:
+class Symbol(NamedTuple):
     """LaTeX of a quantity, and the field of the author's table it comes from."""
 
     latex: str

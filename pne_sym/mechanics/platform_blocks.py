@@ -10,8 +10,8 @@ Reference: sections 2.3 and 2.4, Eqs. 32 to 34.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from pne_sym.derivation import Book, Equation, names_in
 from pne_sym.mechanics.legs import Leg
@@ -30,8 +30,7 @@ from pne_sym.vector import (
 )
 
 
-@dataclass(frozen=True)
-class Side:
+class Side(NamedTuple):
     """Forces, or moments: names of what is collected, and what is made of it.
 
     Attributes:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 import sympy as sp
@@ -48,8 +47,7 @@ I_payload | \mathbf I_l         | given @platform
 """)
 
 
-@dataclass(frozen=True)
-class BaseMotion:
+class BaseMotion(NamedTuple):
     """Motion of a base that moves, in its axes.
 
     Attributes:
@@ -67,8 +65,7 @@ class BaseMotion:
     felt: Vector
 
 
-@dataclass(frozen=True)
-class PlatformMotion:
+class PlatformMotion(NamedTuple):
     """Symbols of the platform's motion and of gravity.
 
     Attributes:

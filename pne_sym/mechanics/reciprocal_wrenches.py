@@ -9,8 +9,7 @@ Reference: section 3.7, Eqs. 35 to 37.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -51,8 +50,7 @@ mu_c#       | \mathbf o_{c#}      | GEOMETRY @tip | Eq. 35
 """)
 
 
-@dataclass(frozen=True)
-class Column:
+class Column(NamedTuple):
     """A column of a leg's system: a degree of freedom, or what completes these to a basis.
 
     Attributes:
@@ -66,8 +64,7 @@ class Column:
     scale: Any
 
 
-@dataclass(frozen=True)
-class ConstraintWrench:
+class ConstraintWrench(NamedTuple):
     """A wrench that does no work along a leg's degrees of freedom: lambda is its coefficient.
 
     Attributes:
@@ -159,7 +156,7 @@ def completed_wrenches(
     ]
     if any(auxiliary.kind is Kind.TURN for auxiliary in chosen):
         # Forces of several wrenches may be in one plane there.
-        found = [replace(w, auxiliary=c) for w, c in zip(found, own, strict=True)]
+        found = [w._replace(auxiliary=c) for w, c in zip(found, own, strict=True)]
     forces, moments_of = zip(*parts, strict=True)
     note_basis(book, g, [*own, *dofs], forces, moments_of)
     return found

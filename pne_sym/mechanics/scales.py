@@ -7,8 +7,8 @@ a residue of them, spoil nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -25,8 +25,7 @@ SMALLEST = 1e-3
 _DIGITS = 6  # more would differ between machines by rounding
 
 
-@dataclass(frozen=True)
-class HomeLengths:
+class HomeLengths(NamedTuple):
     """Lengths of a leg type at home, in metres.
 
     Attributes:

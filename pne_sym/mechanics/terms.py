@@ -12,8 +12,7 @@ Without a meaning of its own it is what its role says.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -25,8 +24,7 @@ from pne_sym.vector import TensorSymbol, Vector, VectorSymbol, ZeroTensor, ZeroV
 _MARKS = "#%&"
 
 
-@dataclass(frozen=True)
-class Term:
+class Term(NamedTuple):
     """A row of a table.
 
     Attributes:
@@ -54,7 +52,7 @@ class Term:
         latex, coefficient, meaning = (
             filled(text, numbers) for text in (self.latex, self.coefficient, self.meaning)
         )
-        return replace(self, latex=latex, coefficient=coefficient, meaning=meaning)
+        return self._replace(latex=latex, coefficient=coefficient, meaning=meaning)
 
 
 def filled(text: str, numbers: Sequence[Any]) -> str:

@@ -6,7 +6,7 @@ import enum
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from operator import add
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -25,8 +25,7 @@ class Kind(enum.IntEnum):
     TOTAL = 5
 
 
-@dataclass(frozen=True, order=True)
-class Stage:
+class Stage(NamedTuple):
     """When a value can be computed, and over which legs.
 
     Attributes:
@@ -69,6 +68,9 @@ class Stage:
             return Stage(highest)
         alone = highest == Kind.PARAMETER_LEG
         return Stage(Kind.PARAMETER_LEG if alone else Kind.STATE_LEG, legs.pop())
+
+
+_AT_STATE = Stage(Kind.STATE)
 
 
 @dataclass(frozen=True)
@@ -140,7 +142,7 @@ class Check:
     scale: Any
     power: int
     equation: str
-    stage: Stage = Stage(Kind.STATE)
+    stage: Stage = _AT_STATE
 
     @property
     def read(self) -> tuple[Any, ...]:
@@ -161,7 +163,7 @@ class Store:
     row: int | tuple[int, ...]
     column: int | tuple[int, ...] | None = None
     equation: str = ""
-    stage: Stage = Stage(Kind.STATE)
+    stage: Stage = _AT_STATE
 
     @property
     def read(self) -> tuple[Any, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -70,7 +69,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
             of = function(*case)
             routine = Steps(bundle, of, {}, {}, Eliminations(), lanes=lanes).routine()
             name = f"of_{number}{'_lanes' if lanes else ''}"
-            routine = replace(routine, name=name)
+            routine = routine._replace(name=name)
             lines += exported(number, of, routine, lanes=lanes)
     head = files["planar_3rpr.c"].split("/* ---- parameters ---- */")[0]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -110,7 +110,7 @@ class Interpreter:
         for index, leg in legs.items():
             yield self.legs[leg], symbol
             if index in (last, glyph.sub):
-                yield self.legs[leg], str(replace(glyph, sub=plain))
+                yield self.legs[leg], str(glyph._replace(sub=plain))
         yield self.platform, symbol
 
     def _parser(self, title: str) -> Parser:
@@ -227,7 +227,7 @@ class Interpreter:
         leg = next(iter(legs.values()), 0)
         scope = self.legs[leg] if leg else self.platform
         if leg and not printed.title:
-            glyph = replace(glyph, sub=glyph.sub.rpartition(",")[0])
+            glyph = glyph._replace(sub=glyph.sub.rpartition(",")[0])
         name, values = str(glyph), []
         title = printed.title or next((s.title for s in self.text.types if leg in s.legs), "")
         self.symbols[title].add(name)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 Lines = tuple[str, ...]
 """Of a formula, or of a table: heads of columns, the rule under them, rows."""
 
 
-@dataclass(frozen=True)
-class EquationView:
+class EquationView(NamedTuple):
     """A numbered equation.
 
     Attributes:
@@ -27,16 +26,14 @@ class EquationView:
     remarks: Lines
 
 
-@dataclass(frozen=True)
-class Statement:
+class Statement(NamedTuple):
     """A displayed formula that sums up, with its sentence."""
 
     text: str
     formula: Lines
 
 
-@dataclass(frozen=True)
-class ChapterView:
+class ChapterView(NamedTuple):
     """A chapter of the derivation.
 
     Attributes:
@@ -54,8 +51,7 @@ class ChapterView:
     statements: tuple[Statement, ...]
 
 
-@dataclass(frozen=True)
-class LegView:
+class LegView(NamedTuple):
     """A leg type: which legs, its structure, axes, notation.
 
     Attributes:
