@@ -131,15 +131,22 @@ typedef real states[LANES];
 /* What is smaller than this fraction has been rounded. */
 #define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
-#define FUNCTION(name, f, d, l) \
-    INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
-FUNCTION(root, sqrtf, sqrt, sqrtl)
-FUNCTION(sine, sinf, sin, sinl)
-FUNCTION(cosine, cosf, cos, cosl)
-FUNCTION(magnitude, fabsf, fabs, fabsl)
-FUNCTION(whole, floorf, floor, floorl)
+/* What calls libm: a loop around such calls has vectors all the same where gcc makes vectors of them. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && HYBRID_3RRRS_LANES >= 4 \
+    && VECTORS_OF(HYBRID_3RRRS_REAL)
+#define CALLING static __attribute__((noinline, const, unused, simd("notinbranch")))
+#else
+#define CALLING INLINE
+#endif
+#define FUNCTION(kind, name, f, d, l) \
+    kind real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
+FUNCTION(INLINE, root, sqrtf, sqrt, sqrtl)
+FUNCTION(INLINE, magnitude, fabsf, fabs, fabsl)
+FUNCTION(INLINE, whole, floorf, floor, floorl)
+FUNCTION(INLINE, sine, sinf, sin, sinl)
+FUNCTION(INLINE, cosine, cosf, cos, cosl)
 
-INLINE real angle(real y, real x)
+CALLING real angle(real y, real x)
 {
     return BY_TYPE(atan2f((float)y, (float)x), atan2((double)y, (double)x),
         atan2l((long double)y, (long double)x));

@@ -89,8 +89,8 @@ typedef real states[LANES];
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
-/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
-#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+/* Legs that one vector holds: the longest, for which alone gcc makes vectors of calls. */
+#define BESIDE(n) LEGS(n)
 
 /* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
    that counts where the legs are done in a vector or two. */
@@ -127,15 +127,22 @@ typedef real states[LANES];
 /* What is smaller than this fraction has been rounded. */
 #define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
-#define FUNCTION(name, f, d, l) \
-    INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
-FUNCTION(root, sqrtf, sqrt, sqrtl)
-FUNCTION(sine, sinf, sin, sinl)
-FUNCTION(cosine, cosf, cos, cosl)
-FUNCTION(magnitude, fabsf, fabs, fabsl)
-FUNCTION(whole, floorf, floor, floorl)
+/* What calls libm: a loop around such calls has vectors all the same where gcc makes vectors of them. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && STEWART_SPS_LANES >= 4 \
+    && VECTORS_OF(STEWART_SPS_REAL)
+#define CALLING static __attribute__((noinline, const, unused, simd("notinbranch")))
+#else
+#define CALLING INLINE
+#endif
+#define FUNCTION(kind, name, f, d, l) \
+    kind real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
+FUNCTION(INLINE, root, sqrtf, sqrt, sqrtl)
+FUNCTION(INLINE, magnitude, fabsf, fabs, fabsl)
+FUNCTION(INLINE, whole, floorf, floor, floorl)
+FUNCTION(CALLING, sine, sinf, sin, sinl)
+FUNCTION(CALLING, cosine, cosf, cos, cosl)
 
-INLINE real angle(real y, real x)
+CALLING real angle(real y, real x)
 {
     return BY_TYPE(atan2f((float)y, (float)x), atan2((double)y, (double)x),
         atan2l((long double)y, (long double)x));

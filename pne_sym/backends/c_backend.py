@@ -30,6 +30,7 @@ from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, indented, wrapped
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
+from pne_sym.program.count import count_block
 from pne_sym.program.ir import Closure, Function
 
 _SUPPORT = ("linear", "rectangular", "operations", "bounds", "rotations", "iteration")
@@ -65,6 +66,7 @@ class CView(NamedTuple):
         sizes: name -> number.
         least: what is not singular is larger -> name.
         narrow: how functions of one state are declared, where that is said.
+        calling: whether legs call sine or cosine for what is solved.
         lanes: number of states that run side by side.
     """
 
@@ -84,6 +86,7 @@ class CView(NamedTuple):
     sizes: dict[str, str]
     least: dict[str, str]
     narrow: str
+    calling: bool
     lanes: int = LANES
 
 
@@ -140,7 +143,14 @@ def _view(bundle: Bundle) -> CView:
         sizes=_sizes(bundle),
         least=least_values(bundle),
         narrow=one_state(bundle),
+        calling=_calls(bundle),
     )
+
+
+def _calls(bundle: Bundle) -> bool:
+    """Whether legs call libm for the forces that are solved for."""
+    blocks = bundle.program.functions["required"].blocks
+    return any(block.leg_type and count_block(block).trig for block in blocks)
 
 
 def _sizes(bundle: Bundle) -> dict[str, str]:
