@@ -1,6 +1,7 @@
 """The order of painting: what is nearer to the eye covers what is farther.
 
-Two solids are compared only where their outlines overlap, at the middle of the overlap.
+Two solids are compared only where their outlines overlap, at the middle of the overlap.  Depths are
+whole numbers of grains, so that rounding, which differs between processors, orders nothing.
 """
 
 from __future__ import annotations
@@ -13,20 +14,28 @@ from pne_sym.drawing.solids import Solid
 from pne_sym.drawing.view import View
 from pne_sym.model.kinematics import Array
 
+_GRAIN = 1e-9  # of the largest coordinate in a picture
+
 
 def painted(solids: Sequence[Solid], view: View) -> list[Solid]:
     """The solids, farthest first; where that is a circle, by the depth of their middles."""
+    sizes = (float(abs(solid.outline).max()) for solid in solids)
+    grain = _GRAIN * max(sizes, default=1.0)
+
+    def depth(solid: Solid, place: Array) -> int:
+        return round(float(solid.depth(view, place)) / grain)
+
     behind: list[set[int]] = [set() for _ in solids]
     for i, one in enumerate(solids):
         for j in range(i):
             place = overlap(one.outline, solids[j].outline)
             if place is None:
                 continue
-            if one.depth(view, place) >= solids[j].depth(view, place):
+            if depth(one, place) >= depth(solids[j], place):
                 behind[i].add(j)
             else:
                 behind[j].add(i)
-    middle = [solid.depth(view, solid.outline.mean(axis=0)) for solid in solids]
+    middle = [depth(solid, solid.outline.mean(axis=0)) for solid in solids]
     left = sorted(range(len(solids)), key=lambda k: (middle[k], k))
     order: list[Solid] = []
     done: set[int] = set()

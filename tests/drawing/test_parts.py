@@ -118,6 +118,18 @@ def test_a_rod_that_leans_away_is_compared_where_it_is_covered() -> None:
     assert painted([near, rod], view) == [rod, near]
 
 
+def test_rounding_orders_nothing() -> None:
+    """Two rods that cross in a point, each time moved by what another processor makes of it."""
+    view, random, found = view_from(0.3, 0.4), np.random.default_rng(0), set()
+    for _ in range(20):
+        rods = []
+        for end in (np.array([0.2, 1.0, 0.5]), np.array([-0.3, 0.4, 1.0])):
+            ends = (end * (1.0 + 1e-15 * random.normal(size=3)) for end in (-end, end))
+            rods.append(cylinder(view, *ends, 0.1, Paint("#222222")))
+        found.add(painted(rods, view)[0] is rods[0])
+    assert found == {True}
+
+
 def test_a_circle_of_covering_is_painted_all_the_same() -> None:
     view = view_from(0.0, 0.0)
     corners = [np.array([0.0, np.cos(a), np.sin(a)]) for a in (0.5, 2.6, 4.7)]
