@@ -96,8 +96,13 @@ typedef real states[LANES];
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
-/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves, but
+   not on AMD's processors (gcc 12 takes newer ones for a Zen 3 that has them). */
+#if LONGEST == 64 && (defined(__znver3__) || defined(__znver4__) || defined(__znver5__))
+#define BESIDE(n) LEGS(n)
+#else
 #define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+#endif
 
 /* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
    that counts where the legs are done in a vector or two. */
