@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from functools import cache
 from importlib.util import cache_from_source
 from pathlib import Path
 from typing import Any
 
 import jinja2
+from jinja2.bccache import Bucket
 
 from pne_sym.model.body import RELATIVE
 from pne_sym.model.coupling import LEAST
@@ -57,16 +58,22 @@ def template_folder() -> Path:
     raise FileNotFoundError("the templates of pne_sym are not installed")
 
 
-def _compiled() -> jinja2.BytecodeCache | None:
-    """Where compiled templates are kept: as Python keeps those of modules beside them."""
-    folder = Path(cache_from_source(str(template_folder() / "template"))).parent
-    if sys.dont_write_bytecode:
-        return None
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return None
-    return jinja2.FileSystemBytecodeCache(str(folder)) if os.access(folder, os.W_OK) else None
+class _Kept(jinja2.FileSystemBytecodeCache):
+    """Keeps compiled templates where Python would keep compiled modules, if that can be written."""
+
+    def __init__(self, templates: Path) -> None:
+        super().__init__(str(Path(cache_from_source(str(templates / "template"))).parent))
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        """Take one that is kept."""
+        with suppress(OSError):
+            super().load_bytecode(bucket)
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Keep one; whoever may not write there compiles it again."""
+        with suppress(OSError):
+            Path(self.directory).mkdir(parents=True, exist_ok=True)
+            super().dump_bytecode(bucket)
 
 
 @cache
@@ -74,7 +81,7 @@ def environment() -> jinja2.Environment:
     """Strict about undefined names; no autoescape, as no output is HTML."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template_folder()),
-        bytecode_cache=_compiled(),
+        bytecode_cache=None if sys.dont_write_bytecode else _Kept(template_folder()),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -164,8 +164,11 @@ def _cheapest_stores(
         if builder.cost_of_all(values) > most:  # more outputs would only add to it
             builder.rollback(mark)
             builder.redo(forgotten)
+            builder.keep_nothing()
             return of_columns, by_columns
-    return of_steps | {output: stores(by_steps, output) for output in others}, by_steps
+    of_steps |= {output: stores(by_steps, output) for output in others}
+    builder.keep_nothing()
+    return of_steps, by_steps
 
 
 def _settle_signs(builder: Builder, meaning: Meaning, slices: list[Slice]) -> None:
