@@ -25,7 +25,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from pne_sym.version import __version__ as __version__
 
 # How many results SymPy keeps per function, which it reads when it is imported.  Its own thousand
 # are fewer than one derivation makes: with these a dense one takes half the time.

@@ -8,7 +8,6 @@ import re
 from dataclasses import asdict
 from typing import Any
 
-from pne_sym import __version__
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_public import CFunction, c_functions
 from pne_sym.backends.registry import default
@@ -16,6 +15,7 @@ from pne_sym.derivation import ParameterField
 from pne_sym.model.full_form import to_full_form
 from pne_sym.program.count import count_block, count_expression
 from pne_sym.program.ir import Counts, Function
+from pne_sym.version import __version__
 
 FORMAT = 2
 """1: without `functions` and `specification`."""

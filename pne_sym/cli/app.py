@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from pne_sym import __version__, comparison, writer
+from pne_sym import comparison, writer
 from pne_sym.backends import registry
 from pne_sym.cli import drawing, homes, listing, review, starter
 from pne_sym.cli.arguments import COMMANDS, GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
 from pne_sym.cli.options import Decorator, debug_flag, flag, valued
+from pne_sym.version import __version__
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
