@@ -59,3 +59,13 @@ def test_gcc_keeps_to_short_vectors_where_legs_are_few(tmp_path: Path) -> None:
     assert "%ymm" in one
     assert "%zmm" not in one
     assert "%zmm" in lanes
+
+
+@ON_X86
+def test_gcc_makes_vectors_around_calls(tmp_path: Path) -> None:
+    """Legs with sines and cosines call these for eight legs, or states, at once."""
+    runs = ("dynamics_run", "dynamics_run_lanes")
+    code = run("gcc", GCC, part("stewart_sps", tmp_path, *runs)).stdout
+    for name in runs:
+        own = code.split(f"\n{name}:\n")[1].split("\t.cfi_endproc")[0]
+        assert {"_ZGVeN8v_sine", "_ZGVeN8v_cosine"} <= set(re.findall(r"call\s+(\w+)", own))
